@@ -21,6 +21,6 @@ runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
 """
 
 
-def telling(module: str, *words: str) -> list[str]:
+def command_that_reports(module: str, *words: str) -> list[str]:
     """Return the command line of ``python -m MODULE WORDS`` that prints `BEGUN` first."""
     return [sys.executable, "-c", _PROGRAM, module, *words]

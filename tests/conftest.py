@@ -16,14 +16,14 @@ from tests.domains import own_domain
 from tests.forked import ForkServer
 from tests.repository_tools import load_tool
 
-# How long an example takes says how busy the machine is. With CI set, hypothesis draws the same examples each time.
+# The duration of an example depends on the machine's load. With CI set, hypothesis draws the same examples each time.
 settings.register_profile("unhurried", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("unhurried")
 
 _MODULE_OF_EXTRA = re.compile(r"^pytestmark = \[?\s*pytest\.mark\.extra\(", re.MULTILINE)
 
-# Shells start what runs in the background without SIGINT, nohup without SIGHUP, and programs inherit that: tests of how
-# they end would never end.
+# Background jobs of a shell ignore SIGINT, and programs under nohup ignore SIGHUP. Their child processes inherit this,
+# and tests that end them by these signals would wait forever.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
@@ -46,7 +46,7 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Ignore wholly marked modules and those of pages in `make test-base`: their imports would fail."""
+    """Ignore modules of pages, and modules that are wholly marked, in `make test-base`: their imports would fail."""
     if "not extra" not in config.option.markexpr:
         return None
     if collection_path.name == "browser":
@@ -57,7 +57,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 @pytest.fixture(autouse=True, scope="session")
 def _state_of_the_user(tmp_path_factory):
-    """Keep the saved state of programs in tests apart from the user's."""
+    """Keep the state files of tested programs separate from the user's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
         yield

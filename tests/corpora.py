@@ -1,8 +1,8 @@
-"""Robots with what ros/xacro and urdfdom make of them.
+"""Robots, and the results of ros/xacro and urdfdom for them.
 
-The corpus of the repository, ``tests/corpus``, is always there. Another one of the same form, for instance of public
-robots, whose licenses keep it out of the repository, is tested as well where it lies beside the checkout
-(``../shared/corpus``) or where ``LINKWRIGHT_CORPUS`` names it.
+The corpus of the repository is ``tests/corpus``. A second corpus of the same form is tested too if it is beside the
+checkout (``../shared/corpus``) or if ``LINKWRIGHT_CORPUS`` names it: for instance public robots, whose licenses keep
+them out of the repository.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Corpus:
 
 @dataclass(frozen=True)
 class Model:
-    """A robot with the arguments it is expanded with."""
+    """A robot, and the arguments for its expansion."""
 
     corpus: Corpus
     data: dict[str, Any]
@@ -87,7 +87,7 @@ class Model:
 
     @property
     def complaints(self) -> list[str]:
-        """Return the errors of check_urdf, which accepted robots can have, too."""
+        """Return the errors of check_urdf, which accepted robots can have too."""
         return list(self.data["urdfdom"]["errors"]) if "urdfdom" in self.data else ["no links"]
 
     def marked(self, text: str) -> str:

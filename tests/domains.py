@@ -7,11 +7,11 @@ import random
 import socket
 
 _LAST = 100
-"""Beyond 101 the ports of a domain are among those that Linux gives to whoever asks for any."""
+"""The last domain. From 101 on, the ports of a domain are in Linux's range of ephemeral ports."""
 _FIRST_PORT = 27_000
 
 _locks: list[socket.socket] = []
-"""Held until this process ends, however it ends."""
+"""The sockets that reserve domains; they stay open until the process ends."""
 
 
 @functools.cache

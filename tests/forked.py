@@ -1,7 +1,7 @@
-"""Programs that tests start often, forked off a process that has imported what they need.
+"""Programs that tests start often, forked from a process that has imported their modules.
 
-Tests of how a process starts, of what it imports and of what Python itself reads of its environment take
-`start_process` or `subprocess`. Why: docs/decisions/0081-programs-of-tests-are-forked.md
+Tests of the start of a process, of its imports, and of the environment variables that Python itself reads use
+`start_process` or `subprocess`. The reason is in docs/decisions/0081-programs-of-tests-are-forked.md.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ _IMPORTED = (
 
 @dataclass
 class Program:
-    """A running ``python -m linkwright WORDS``, which reads nothing and prints into one pipe.
+    """A running ``python -m linkwright WORDS``; it has no input, and prints to one pipe.
 
     Attributes:
-        process: the process, forked off or fresh.
-        stdout: what it prints, standard error included, as text.
+        process: the forked or new process.
+        stdout: the output as text, including standard error.
     """
 
     process: forked.Program
@@ -60,15 +60,15 @@ class Program:
         return self.process.poll()
 
     def wait(self, timeout: float | None = None) -> int:
-        """Wait for its end, and give the exit status.
+        """Wait for the end of the process, and return its exit status.
 
         Raises:
-            subprocess.TimeoutExpired: when it did not end within that many seconds.
+            subprocess.TimeoutExpired: the process did not end within `timeout` seconds.
         """
         return self.process.wait(timeout)
 
     def send_signal(self, number: int) -> None:
-        """Send a signal unless it has ended."""
+        """Send a signal unless the process has ended."""
         self.process.send_signal(number)
 
     def terminate(self) -> None:
@@ -86,7 +86,7 @@ def start_process(words: list[str], *, cwd: Path, env: Mapping[str, str]) -> Pro
 
 
 class ForkServer:
-    """The process that programs are forked off; it starts with the first of them."""
+    """The process from which programs are forked; it starts with the first program."""
 
     def __init__(self) -> None:
         self._server = forked.ForkServer(_IMPORTED, variables={"PYTHONUNBUFFERED": "1"})
@@ -96,7 +96,7 @@ class ForkServer:
         return _start(self._server.start, words, cwd, env)
 
     def close(self) -> None:
-        """End the process; programs that run go on."""
+        """End the process; running programs continue."""
         self._server.close()
 
 

@@ -13,7 +13,7 @@ needs_limits = pytest.mark.skipif(sys.platform == "win32", reason="Windows has n
 
 @contextmanager
 def full_disk(room: int) -> Iterator[None]:
-    """While this is entered, no file of this process can have more than so many bytes."""
+    """Limit the size of the files that this process writes to a number of bytes."""
     import resource
 
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)

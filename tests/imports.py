@@ -10,7 +10,7 @@ _ALWAYS = "import importlib"
 
 
 def loaded_by(code: str) -> set[str]:
-    """Return the modules that a process loads for some code, except those of `_ALWAYS`."""
+    """Return the modules that a process loads for some code, except the modules that `_ALWAYS` loads."""
     return _modules(code) - _modules(_ALWAYS)
 
 

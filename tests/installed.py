@@ -15,12 +15,12 @@ _CONSTRAINTS = REPOSITORY / ".build" / "constraints.txt"
 
 
 def install(folder: Path, *others: str, extra: str = "all", project: Path = REPOSITORY) -> Path:
-    """Make an environment in a folder, with the wheel and other packages, once for all workers of a test run.
+    """Create an environment with the wheel and other packages, once for all workers of a test run.
 
     Args:
-        folder: shared by the workers; it gets ``wheel/`` and ``environment/``.
-        others: what else is installed, such as ``pytest``.
-        extra: the extra of the wheel; none where it is empty.
+        folder: a folder that the workers share, for ``wheel/`` and ``environment/``.
+        others: other packages to install, such as ``pytest``.
+        extra: the extra of the wheel; none if empty.
         project: the folder whose wheel is built.
 
     Returns:

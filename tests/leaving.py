@@ -1,4 +1,4 @@
-"""Clients that ask a server and leave, with a reset, before they have their answer."""
+"""Clients that send a request and reset the connection before the response."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import socket
 import struct
 
 STEPS = 12
-"""One client for each number of steps of the event loop before it leaves: that covers reading and answering."""
+"""The number of clients. Client n leaves after n turns of the event loop: while the server reads, or responds."""
 
 _RESET_AT_ONCE = struct.pack("ii", 1, 0)
 UPGRADE = (
@@ -16,8 +16,8 @@ UPGRADE = (
 )
 
 
-async def ask_and_leave(port: int, target: str, headers: str = "") -> None:
-    """Ask for something on this machine's `port` three times over and leave, sooner and later.
+async def request_and_reset(port: int, target: str, headers: str = "") -> None:
+    """Send three requests to a local port and reset the connection, after different numbers of turns of the event loop.
 
     The server runs on the event loop of the caller.
     """

@@ -8,18 +8,18 @@ from pathlib import Path
 from tests.places import REPOSITORY
 
 _SETTINGS = REPOSITORY / "pyproject.toml"
-"""Named to each process: one in another folder would not find it, and would measure the learner's programs."""
+"""Processes in other folders would not find the settings, and would also measure the learner's programs."""
 
 
 def _data_file() -> Path | None:
-    """Return the file of the coverage of the tests, or None if it is not measured."""
+    """Return the data file of the tests' coverage, or None if coverage is not measured."""
     coverage = sys.modules.get("coverage")
     measuring = None if coverage is None else coverage.Coverage.current()
     return None if measuring is None else Path(measuring.get_option("run:data_file")).resolve()
 
 
 def coverage_options() -> list[str]:
-    """Return the options that measure the coverage of a Python process, if that of the tests is measured."""
+    """Return the options that measure the coverage of a Python process, if the tests' coverage is measured."""
     data_file = _data_file()
     if data_file is None:
         return []
@@ -27,7 +27,7 @@ def coverage_options() -> list[str]:
 
 
 def measured_program(program: str, part: str) -> str:
-    """Return a program for ``python -c`` in which the coverage of a part is measured, if that of the tests is."""
+    """Return a program for ``python -c`` that measures the coverage of a part, if the tests' coverage is measured."""
     data_file = _data_file()
     if data_file is None:
         return program

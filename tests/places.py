@@ -15,7 +15,7 @@ CONTROL_PACKAGE = REPOSITORY / "robots" / "my_robot_control"
 NAVIGATION_PACKAGE = REPOSITORY / "robots" / "my_robot_navigation"
 VISION_PACKAGE = REPOSITORY / "robots" / "my_robot_vision"
 PUBLISHED = (REPOSITORY.parent / "shared" / "tutorial" / "my_robot_description").resolve()
-"""The tutorial's package as published, where it is at hand: it is not part of the repository."""
+"""The folder of the tutorial's published package, which is not part of the repository and may not exist."""
 TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]
 """The packages that a reader of the tutorial may have: ours, and the published one."""
 
@@ -26,5 +26,5 @@ def without_meshes(package: Path, folder: Path) -> Path:
 
 
 BUILT_PAGE = REPOSITORY / "src" / "linkwright" / "page" / "built"
-needs_page = pytest.mark.skipif(not (BUILT_PAGE / "export").is_dir(), reason="the page was not built")
+needs_page = pytest.mark.skipif(not (BUILT_PAGE / "export").is_dir(), reason="the page is not built")
 """The mark of tests that use the page. `make test` builds it; a run without it skips them."""

@@ -1,8 +1,8 @@
-"""Event loops whose waits are skipped: what takes seconds takes milliseconds, on a busy machine too.
+"""Event loops that skip their waits: a test of some seconds takes milliseconds, also on a busy machine.
 
-The time of such a loop passes only while nothing else is left to do, as far as the next thing that is due. However slow
-the machine is, work takes no time, so that rates, delays and order are the same in each run. What goes by the clock of
-the computer (``time.monotonic``) sees nothing of it; a graph does, when it has a `LoopClock`.
+The time of such a loop advances to the next due call, and only if no work is left. Work takes no time, however slow the
+machine is, so rates, delays and order are the same in each run. Code that reads the computer's clock
+(``time.monotonic``) does not see this time; a graph sees it if it has a `LoopClock`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from typing import Any, TypeVar
 from linkwright.graph import SystemClock, Timebase
 
 _LOOK = 0.0005
-"""Seconds in which a socket or another thread may still bring something before time passes."""
+"""The seconds to wait for sockets and other threads before time advances."""
 _STEP = 0.02
-"""Most seconds that pass then: what was on its way longer than one look does not run into a timeout."""
+"""The maximum seconds per advance, so that data that arrives after `_LOOK` does not meet a timeout."""
 
 T = TypeVar("T")
 
@@ -31,7 +31,7 @@ class _SkippingSelector(selectors.DefaultSelector):  # type: ignore[misc, valid-
         super().__init__()
         self.passed = 0.0
         self.working = 0
-        """Calls that other threads make for the loop: they take the time of the machine."""
+        """The number of calls in other threads; the loop waits in real time for them."""
 
     def select(self, timeout: float | None = None) -> Any:
         if timeout is None or timeout <= 0 or self.working:
@@ -50,11 +50,11 @@ class SkippingLoop(asyncio.SelectorEventLoop):
         super().__init__(self._skipping)
 
     def time(self) -> float:
-        """Seconds, 1000 at the beginning."""
+        """Return the loop's time in seconds, which starts at 1000."""
         return 1000.0 + self._skipping.passed
 
     def run_in_executor(self, executor: Any, func: Callable[..., Any], *args: Any) -> asyncio.Future[Any]:
-        """Let another thread do something, during which no time is skipped."""
+        """Run a function in another thread; no time is skipped meanwhile."""
         future = super().run_in_executor(executor, func, *args)
         self._skipping.working += 1
         future.add_done_callback(self._worked)
@@ -65,7 +65,7 @@ class SkippingLoop(asyncio.SelectorEventLoop):
 
 
 class LoopClock(Timebase):
-    """The time of the event loop, for the graph on it; a microsecond passes between two looks at the time of day."""
+    """The time of the event loop, for the graph on it; each reading of the time of day is a microsecond later."""
 
     def __init__(self) -> None:
         self._loop = asyncio.get_running_loop()
@@ -81,7 +81,7 @@ class LoopClock(Timebase):
         return round(self._loop.time() * 1e9)
 
     def call_at(self, loop: asyncio.AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Any:
-        """Call something once on the loop."""
+        """Call a function once on the loop."""
         return loop.call_at(steady_ns / 1e9, callback)
 
 

@@ -1,4 +1,4 @@
-"""Benchmarks run only by hand: these tests check that their imports exist."""
+"""Benchmarks are run only by hand, so these tests check that their imports exist."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import benchmarks
 import pytest
 
 NODES = {"soak_parts"}
-"""Programs that run where ROS 2's names can be imported."""
+"""Programs that need importable modules of ROS 2."""
 MODULES = {iter_module.name for iter_module in pkgutil.iter_modules(benchmarks.__path__)} - NODES - {"__main__"}
 
 

@@ -1,4 +1,4 @@
-"""The container file runs the demo of the Makefile, with a Python and extras that there are, and not as root."""
+"""The container file runs the demo of the Makefile with an existing Python and existing extras, and not as root."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_container_runs_makefile_demo_as_non_root(container):
     (command,) = re.findall(r"^CMD (.+)$", container, re.MULTILINE)
     words = json.loads(command)
     arguments = parser_for(words[0]).parse_intermixed_args(words[1:])
-    assert (arguments.host, arguments.no_open) == ("0.0.0.0", True)  # the port of a container is its only way in
+    assert (arguments.host, arguments.no_open) == ("0.0.0.0", True)  # a container is reachable only through its port
     assert f"EXPOSE {arguments.port}\n" in container
     robot = words[2].removeprefix("/opt/linkwright/robots/")
     assert (REPOSITORY / "robots" / robot).is_file()

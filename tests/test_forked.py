@@ -13,7 +13,7 @@ from tests.forked import ForkServer, Program, start_process
 from tests.places import PACKAGE
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="programs are forked off on Linux only")
+pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="programs are forked on Linux only")
 
 ROBOT = PACKAGE / "urdf" / "mbot_base.xacro"
 QUIET = {**os.environ, "LINKWRIGHT_DDS": "0", "NO_COLOR": "1"}
@@ -74,7 +74,7 @@ def test_signals_end_forked_program(start, tmp_path, number, status):
         program.stdout.read()
         assert program.wait(SECONDS) == status
         assert program.poll() == status
-        program.send_signal(number)  # to nobody
+        program.send_signal(number)  # no effect on an ended program
 
 
 def test_forked_programs_run_in_parallel(fork_server, tmp_path):
@@ -117,7 +117,7 @@ def test_killed_fork_server_is_replaced(tmp_path):
         assert any(line.startswith("Viewer: ") for line in program.stdout)
         server._server._process.kill()
         server._server._process.wait()
-        assert program.wait(SECONDS) == -signal.SIGKILL  # nobody can know its status any more
+        assert program.wait(SECONDS) == -signal.SIGKILL  # its status is unknown without the server
         os.kill(program.pid, signal.SIGTERM)
     again = server.start(["--version"], cwd=tmp_path, env=QUIET)
     assert isinstance(again.process, forked.ForkedProcess)

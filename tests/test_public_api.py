@@ -1,4 +1,4 @@
-"""`import linkwright` offers the way in for programs, and loads each name only when it is used."""
+"""`import linkwright` offers the names for programs, and loads each name only when it is used."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.repository_tools import load_tool
 
-UNSTEADY = """
+FLAKY = """
 from pathlib import Path
 
 def test_a():
@@ -25,7 +25,7 @@ def test_b():
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # it starts sooner
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # pytest starts faster without plugins
     return tmp_path
 
 
@@ -38,14 +38,14 @@ def run(*arguments: str) -> int:
 
 
 def test_passing_test_runs_once(project, capfd):
-    write(project, UNSTEADY.replace("FAILING", "()"))
+    write(project, FLAKY.replace("FAILING", "()"))
     assert run() == 0
     assert (project / "runs").read_text() == "x"
     assert "UNSTEADY" not in capfd.readouterr().out
 
 
 def test_flaky_test_is_rerun_three_times_and_named(project, capfd):
-    write(project, UNSTEADY.replace("FAILING", "(1,)"))
+    write(project, FLAKY.replace("FAILING", "(1,)"))
     assert run() == 0
     assert (project / "runs").read_text() == "xxxx"
     output = capfd.readouterr().out
@@ -54,8 +54,8 @@ def test_flaky_test_is_rerun_three_times_and_named(project, capfd):
 
 
 @pytest.mark.parametrize("failing", ["(1, 2)", "(1, 4)", "range(9)"])
-def test_test_that_fails_twice_fails(project, failing):
-    write(project, UNSTEADY.replace("FAILING", failing))
+def test_run_fails_if_test_fails_twice(project, failing):
+    write(project, FLAKY.replace("FAILING", failing))
     assert run() == 1
 
 

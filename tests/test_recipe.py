@@ -41,7 +41,7 @@ def test_recipe_host_requirements_match_build_requirements(recipe, monkeypatch):
     assert (pinned, installer) == ("python ${{ python_min }}.*", "pip")
     hook = (REPOSITORY / "hatch_build.py").read_text(encoding="utf-8")
     ours = re.findall(r'"([a-z]+>=[\d.]+)"', hook.partition("*([]")[0])
-    assert len(ours) == 2  # what the stubs and the catalogs take; the source distribution has the page
+    assert len(ours) == 2  # for the stubs and the catalogs; the source distribution contains the built page
     assert bounds(needed) == bounds([*PYPROJECT["build-system"]["requires"], *ours])
 
 

@@ -27,9 +27,9 @@ SYSTEMS = {
     "Windows": ("win32", "AMD64", ["win_amd64"]),
 }
 PLAIN = {"empy", "srt"}
-"""Packages of Python alone that come as source only: installing them needs no compiler."""
+"""Pure Python packages without wheels: their installation needs no compiler."""
 PLAIN_IF_NEED_BE = {"pyyaml": "3.15"}
-"""Packages that leave out what they cannot compile, and from which Python on they come as source only."""
+"""Packages that work without their compiled part, and the Python from which on they have no wheels."""
 
 
 @pytest.fixture(scope="module")
@@ -51,9 +51,9 @@ def test_all_dependencies_install_without_compiler(
     needed = {package["name"]: package for package in _needed(lock, _environment(system, python))}
     tags = _tags(system, python)
     without = {name for name, package in needed.items() if not _has_wheel(package, tags)}
-    assert {"aiohttp", "numpy", "pillow", "vosk"} <= set(needed)  # of the base, and of extras
+    assert {"aiohttp", "numpy", "pillow", "vosk"} <= set(needed)  # packages of the base and of extras
     assert without - allowed == set()
-    assert without >= PLAIN, "what has wheels is no exception any more"
+    assert without >= PLAIN, "packages with wheels must be removed from the exceptions"
 
 
 def test_exceptions_for_new_python_versions_are_needed(lock: dict[str, list[dict[str, Any]]]) -> None:
@@ -93,7 +93,7 @@ def _has_wheel(package: dict[str, Any], tags: set[Tag]) -> bool:
 
 
 def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) -> Iterator[dict[str, Any]]:
-    """Return the packages of ``linkwright[all]`` on such a machine."""
+    """Return the packages that ``linkwright[all]`` needs in an environment."""
     (root,) = lock["linkwright"]
     asked = [*root["dependencies"], *root["optional-dependencies"]["all"]]
     seen: set[tuple[str, str, str]] = set()
@@ -110,7 +110,7 @@ def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) 
             asked += (
                 package.get("optional-dependencies", {}).get(extra, ()) if extra else package.get("dependencies", ())
             )
-        if "registry" in package["source"]:  # the package is not one of ours
+        if "registry" in package["source"]:  # the package is from an index
             yield package
 
 

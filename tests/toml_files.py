@@ -1,4 +1,4 @@
-"""Files of TOML, which Python itself reads from 3.11 on."""
+"""TOML files, which Python itself can read from 3.11 on."""
 
 from __future__ import annotations
 
@@ -27,4 +27,4 @@ EXTRAS: dict[str, list[str]] = {
 """The extras, without ``all``."""
 
 TOGETHER = frozenset(re.split(r"[\[,\]]", PROJECT["optional-dependencies"]["all"][0])[1:-1])
-"""Those that ``all`` brings."""
+"""The extras that ``all`` includes."""

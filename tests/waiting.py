@@ -32,7 +32,7 @@ def wait_until(
 
 
 async def eventually(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:
-    """Let the other tasks go on until a condition holds."""
+    """Let the other tasks run until a condition holds."""
     limit = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < limit, _failure(seconds, what)
@@ -45,9 +45,9 @@ def is_waiting(thread: threading.Thread) -> bool:
     if frame is None:
         return False
     code = frame.f_code
-    # By its name, as programs of the tests also run where there is nothing of ours.
+    # The frame is recognized by name, because programs of the tests also run without Linkwright.
     return code.co_filename == threading.__file__ or (code.co_name, Path(code.co_filename).name) == _EXECUTOR_WAITS
 
 
 def _failure(seconds: float, what: object) -> str:
-    return f"not so within {seconds} s: {what() if callable(what) else what}"
+    return f"the condition did not hold within {seconds} s: {what() if callable(what) else what}"

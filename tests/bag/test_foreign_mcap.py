@@ -42,7 +42,7 @@ OURS = schema(1, "std_msgs/msg/String", "ros2msg", b"string data") + channel(1, 
 OTHERS = (
     schema(2, "thing", "jsonschema", b'{"type":"object"}')
     + channel(2, "/thing", "json")
-    + schema(3, "foxglove.Pose", "protobuf", bytes(range(128, 250)))  # no text at all
+    + schema(3, "foxglove.Pose", "protobuf", bytes(range(128, 250)))  # not text
     + channel(3, "/pose", "protobuf")
 )
 
@@ -51,10 +51,10 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
     """Write a file of five messages on each of three channels.
 
     Args:
-        path: where to.
-        declared: its schemas and channels.
+        path: the path of the file.
+        declared: the records of its schemas and channels.
         kind: ``indexed``; ``unindexed``, a chunk without a summary; ``loose``, without chunks; ``cut off``.
-        profile: of its header.
+        profile: the profile in its header.
     """
     stamps = [START_NS + number * 1000 for number in range(5)]
     parts = [

@@ -50,12 +50,12 @@ def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
     history, _ = filled_history(max_size=5 * 1200, count=3000)
     assert history.size <= 5 * 1200
     messages = list(history.messages(["/a"], 0))
-    assert [stamp // SECOND for _, stamp, _ in messages] == [2996, 2997, 2998, 2999], "and the one before is known"
+    assert [stamp // SECOND for _, stamp, _ in messages] == [2996, 2997, 2998, 2999], "the last four messages fit"
     assert history.start_ns == 2996 * SECOND
     assert numbers(history.state_at(["/a"], 2995 * SECOND)) == [2995 % 256]
     assert history.state_at(["/a"], 2994 * SECOND) == []
     history.add("/a", bytes(10**5))
-    assert history.count == 3000, "what alone is too large is not kept"
+    assert history.count == 3000, "a message larger than the limit is not stored"
 
 
 def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
@@ -82,7 +82,7 @@ def test_message_stream_continues_after_end_when_messages_arrive() -> None:
     clock.ns = 3 * SECOND
     history.add("/b", b"\10")
     history.add("/a", b"\11")
-    clock.ns = 2 * SECOND  # the clock was set: times never go back
+    clock.ns = 2 * SECOND  # the clock is set back, but recorded times do not decrease
     history.add("/a", b"\12")
     assert numbers(stream) == [8, 9, 10]
     assert history.end_ns == 3 * SECOND
@@ -100,7 +100,7 @@ def wait_until_packed(history: History, max_size: int) -> None:
 def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
     clock = Clock()
     history = History(10**6, clock)
-    for second in range(100):  # as they are, these would be 20 MB
+    for second in range(100):  # 20 MB without compression
         clock.ns = second * SECOND
         history.add("/camera", image(second))
         wait_until_packed(history, (second + 1) * 1000)
@@ -108,7 +108,7 @@ def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
     assert history.state_at(["/camera"], 50 * SECOND) == [("/camera", 50 * SECOND, image(50))]
     assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND)] == [image(98), image(99)]
     part = history.messages_between(97 * SECOND, 99 * SECOND)
-    assert sum(len(data) for _, _, data in part) < 204_000, "packed, but for the state before them"
+    assert sum(len(data) for _, _, data in part) < 204_000, "all but the state before them are compressed"
     assert [uncompressed_bytes(data) for _, _, data in part] == [image(96), image(97), image(98), image(99)]
     history.close()
 
@@ -137,7 +137,7 @@ def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.Mo
     history, _ = filled_history(count=0, max_size=500_000)
     for shade in range(5):
         history.add("/camera", image(shade))
-    assert history.size == 2 * 200_200, "one, and the one before it"
+    assert history.size == 2 * 200_200, "two images: one is being compressed, and the newest one"
     proceed.set()
     wait_until_packed(history, 210_000)
     assert [data[0] for _, _, data in history.messages(["/camera"], 0)] == [4]
@@ -171,7 +171,7 @@ def test_unmoving_joint_states_keep_two_messages_per_ten_seconds() -> None:
     size = history.size
     states(clock, history, [1.5] * 900, start=60.0)
     assert history.size == size + 2 * (size // 12)
-    # The state of any time in between is the same, with a stamp that is no older than that time.
+    # The position is the same at any time in between, and its stamp is not before that time.
     for second in (0.5, 7.0, 29.99, 65.0):
         ((position, stamp),) = positions(history.state_at(["/joint_states"], int(second * SECOND)))
         assert position == 1.5
@@ -325,7 +325,7 @@ def test_content_of_malformed_transforms_is_empty(data: bytes) -> None:
 def test_images_beyond_limit_are_thinned_over_minutes() -> None:
     clock = Clock()
     history = History(max_size := 4_000_000, clock)
-    noise = np.random.default_rng(1).bytes(15_000)  # 266 of them fill the room: nine seconds
+    noise = np.random.default_rng(1).bytes(15_000)  # the limit allows 266 messages: nine seconds
     for frame in range(30 * 300):
         clock.ns = frame * SECOND // 30
         history.add("/camera", noise)
@@ -336,9 +336,9 @@ def test_images_beyond_limit_are_thinned_over_minutes() -> None:
     stamps = [stamp / SECOND for _, stamp, _ in history.messages(["/camera"], 0)]
     assert len(stamps) > 200
     gaps = np.diff(stamps)
-    assert gaps[-20:].max() < 0.1, "the last second is as it came"
+    assert gaps[-20:].max() < 0.1, "the last second is not thinned"
     assert gaps.max() < 20
-    assert len(list(history.messages(["/small"], 0))) == 300, "what is small stays"
+    assert len(list(history.messages(["/small"], 0))) == 300, "small messages are not thinned"
     assert history.state_at(["/camera"], 100 * SECOND)
 
 

@@ -33,7 +33,7 @@ def transform(child: str) -> bytes:
 
 
 def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
-    """Twenty seconds: ``/a`` each second, ``/b`` each fourth, ``/tf`` twice a second, ``/tf_static`` at 0 and 9."""
+    """Record 20 s: ``/a`` each second, ``/b`` each fourth, ``/tf`` twice a second, ``/tf_static`` at 0 and 9 s."""
     path = folder / "bag"
     with BagWriter(path, storage, compression="storage" if compressed else "none") as writer:
         for name, kind, qos in (
@@ -92,7 +92,7 @@ def without_index(whole: bytes, *, message_indexes: bool) -> bytes:
     while True:
         kind, length = struct.unpack_from("<BQ", whole, place)
         end = place + 9 + length
-        if kind == 0x0F:  # the end of the data
+        if kind == 0x0F:  # the record DataEnd
             break
         if kind != 0x07 or message_indexes:
             records += whole[place:end]
@@ -132,7 +132,7 @@ def test_message_counts_per_interval_are_returned(tmp_path: Path, storage: str) 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> None:
-    """Also before and after all, where topics pause for long, and where messages came at one time."""
+    """Also compare times before and after all messages, in long pauses, and at equal times of several messages."""
     stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND, 90 * SECOND]
     topics = ("/a", "/b", "/tf", "/tf_static")
     with BagWriter(tmp_path / "bag", storage) as writer:
@@ -157,7 +157,7 @@ def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> 
 
 
 class PlayedRecording:
-    """A graph with a recording in it, and a node that listens."""
+    """A graph that plays a recording, and a node that subscribes to its topics."""
 
     def __init__(self, path: Path) -> None:
         self.log: list[LogRecord] = []
@@ -212,7 +212,7 @@ async def test_playback_publishes_subscribed_topics_and_clock(recording: PlayedR
     assert recording.times == sorted(recording.times)
     assert 2.4 * SECOND < recording.times[-1] <= 2.5 * SECOND
     recording.listen("/b")
-    assert await recording.take_heard() == ["b 0"], "who comes later is told what was there"
+    assert await recording.take_heard() == ["b 0"], "a late subscription receives the last message"
     recording.playback.set_speed(2)
     await recording.clock.advance(1.0)
     assert await recording.take_heard() == ["a 3", "a 4", "b 4"]
@@ -227,7 +227,7 @@ async def test_seek_resets_listeners_before_publishing_state(recording: PlayedRe
     await recording.take_heard()
     recording.playback.seek(START + 3 * SECOND)
     recording.playback.seek(START + 10 * SECOND + 5)
-    assert await recording.take_heard() == ["reset", "b 8", "a 10"], "of several seeks the newest"
+    assert await recording.take_heard() == ["reset", "b 8", "a 10"], "only the last of several seeks is executed"
     assert recording.playback.position_ns == START + 10 * SECOND + 5
     recording.playback.seek(START + 2 * SECOND)
     assert await recording.take_heard() == ["reset", "b 0", "a 2"]
@@ -256,14 +256,14 @@ async def test_step_by_topic_publishes_messages_between(recording: PlayedRecordi
     recording.listen("/a")
     await recording.take_heard()
     recording.playback.step(True, "/b")
-    assert await recording.take_heard() == ["a 1", "a 2", "a 3", "a 4"], "what lies between is shown, too"
+    assert await recording.take_heard() == ["a 1", "a 2", "a 3", "a 4"], "messages of other topics are published too"
     assert recording.playback.position_ns == START + 4 * SECOND
     recording.playback.step(False, "/tf_static")
     assert await recording.take_heard() == ["reset", "a 0"]
     recording.playback.seek(START + 19 * SECOND)
     await recording.take_heard()
     recording.playback.step(True, "/b")
-    assert await recording.take_heard() == [], "there is no later one"
+    assert await recording.take_heard() == [], "there is no later message of the topic"
     assert recording.playback.position_ns == START + 19 * SECOND
 
 
@@ -288,7 +288,7 @@ async def test_step_back_without_subscriptions_keeps_position(recording: PlayedR
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: str) -> None:
-    """With one transform a minute, a time between two shows the robot's last pose."""
+    """There is one transform a minute. Between two transforms, the robot has its last pose."""
     with BagWriter(tmp_path / "bag", storage) as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
         for stamp in (0, 59, 60, 180):
@@ -321,7 +321,7 @@ async def test_playback_stops_at_end_or_loops(recording: PlayedRecording) -> Non
     assert (await recording.take_heard())[:2] == ["reset", "b 0"]
     assert recording.playback.playing
     await recording.clock.advance(20.0)
-    assert recording.playback.position_ns < START + 2 * SECOND, "it has begun anew"
+    assert recording.playback.position_ns < START + 2 * SECOND, "playback has started again from the beginning"
 
 
 async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Path) -> None:
@@ -346,7 +346,7 @@ async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Pat
 async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> None:
     path = recorded(tmp_path, compressed=True)
     (file,) = path.glob("*.mcap")
-    magic = b"\x28\xb5\x2f\xfd"  # of zstd
+    magic = b"\x28\xb5\x2f\xfd"  # starts each zstd frame
     first, rest = file.read_bytes().split(magic, 1)
     file.write_bytes(first + magic + rest.replace(magic, b"zstd"))
     recording = PlayedRecording(path)

@@ -129,7 +129,7 @@ async def test_player_seek_continues_from_given_time(scene, clock, paused):
         await scene.call("resume")
     await clock.advance(0.9)
     assert scene.heard == (["3"] if paused else ["0", "3"])
-    assert (await scene.call("seek", time=Time(sec=1))).success  # before its start
+    assert (await scene.call("seek", time=Time(sec=1))).success  # before the start of the recording
     await clock.advance(1.1)
     assert scene.heard[-2:] == ["0", "1"]
 

@@ -162,9 +162,8 @@ def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
                 writer.add_topic("/other", "std_msgs/msg/String", [DEFAULT_QOS])
                 writer.write("/other", START, serialize(String(data="early")))
             for step in range(3):
-                stamp = (
-                    START + number * 1_000_000_000 + step * 400_000_000
-                )  # the last one is after the next file's first
+                # The last message of a file is later than the first message of the next file.
+                stamp = START + number * 1_000_000_000 + step * 400_000_000
                 writer.write("/chatter", stamp, serialize(String(data=f"{number}.{step}")))
         (file,) = (path for path in (folder / f"part{number}").iterdir() if path.name != "metadata.yaml")
         files.append(folder / "drive" / f"{name}{file.suffix}")

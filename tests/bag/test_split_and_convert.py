@@ -1,4 +1,4 @@
-"""Recordings of several files, snapshots, and recordings written anew."""
+"""Recordings of several files, snapshots, and conversions of recordings."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def content(path: Path) -> list[tuple[str, int, bytes]]:
         return [(topic, stamp, bytes(data)) for topic, stamp, data in bag.messages()]
 
 
-def whole(topic: str = "/words", count: int = 40) -> list[tuple[str, int, bytes]]:
+def expected_messages(topic: str = "/words", count: int = 40) -> list[tuple[str, int, bytes]]:
     return [(topic, START + number * SECOND // 10, text(number)) for number in range(count)]
 
 
@@ -62,7 +62,7 @@ def test_recording_splits_by_duration_and_metadata_lists_files(tmp_path, storage
     )
     assert result["message_count"] == result["topics_with_message_count"][0]["message_count"] == 40
     assert result["duration"]["nanoseconds"] == 39 * SECOND // 10
-    assert content(folder) == whole()
+    assert content(folder) == expected_messages()
 
 
 @pytest.mark.parametrize("storage", STORAGES)
@@ -71,7 +71,7 @@ def test_recording_splits_by_size(tmp_path, storage) -> None:
     sizes = [path.stat().st_size for path in folder.iterdir() if path.suffix in (".mcap", ".db3")]
     assert len(sizes) >= 3
     assert max(sizes) < 200_000
-    assert content(folder) == whole()
+    assert content(folder) == expected_messages()
 
 
 def test_single_file_is_numbered_like_rosbag2(tmp_path) -> None:
@@ -92,7 +92,7 @@ def test_snapshot_writes_last_messages_within_size_limit(tmp_path) -> None:
             writer.write("/words", START + number * SECOND // 10, text(number))
         assert writer.take_snapshot()
         writer.write("/words", START + SECOND, text(9))
-    assert content(tmp_path / "drive") == whole(count=8)[5:]
+    assert content(tmp_path / "drive") == expected_messages(count=8)[5:]
 
 
 def test_normal_recording_has_no_snapshots(tmp_path) -> None:
@@ -108,7 +108,7 @@ def test_reindex_restores_metadata(tmp_path, storage, compression) -> None:
     reindex(folder)
     keys = ("relative_file_paths", "files", "message_count", "starting_time", "topics_with_message_count", "duration")
     assert {key: metadata(folder)[key] for key in keys} == {key: before[key] for key in keys}
-    assert content(folder) == whole()
+    assert content(folder) == expected_messages()
 
 
 def test_reindex_restores_killed_recording_of_several_files(tmp_path) -> None:
@@ -118,7 +118,7 @@ def test_reindex_restores_killed_recording_of_several_files(tmp_path) -> None:
     (folder / "metadata.yaml").unlink()
     reindex(folder)
     with BagReader(folder) as bag:
-        assert [stamp for _, stamp, _ in bag.messages()] == [stamp for _, stamp, _ in whole()]
+        assert [stamp for _, stamp, _ in bag.messages()] == [stamp for _, stamp, _ in expected_messages()]
 
 
 def test_reindex_rejects_folder_without_recording_files(tmp_path) -> None:
@@ -145,12 +145,13 @@ def test_rewrite_merges_by_time_and_splits_by_topics(tmp_path) -> None:
     )
     assert [folder.name for folder in folders] == ["all", "some", "part"]
     assert content(folders[0]) == sorted(
-        [*whole(), *whole("/others", 10)], key=lambda message: (message[1], message[0] != "/words")
+        [*expected_messages(), *expected_messages("/others", 10)],
+        key=lambda message: (message[1], message[0] != "/words"),
     )
     assert metadata(folders[0])["relative_file_paths"] == ["all_0.db3", "all_1.db3"]
-    assert content(folders[1]) == whole("/others", 10)
+    assert content(folders[1]) == expected_messages("/others", 10)
     assert (folders[1] / "some_0.mcap.zstd").exists()
-    assert content(folders[2]) == whole()[20:]
+    assert content(folders[2]) == expected_messages()[20:]
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ collect_ignore_glob = [] if find_spec("zenoh") and find_spec("cyclonedds") else 
 
 @pytest.fixture(autouse=True)
 def variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) -> None:  # noqa: F811 - fixtures
-    """Set the address of a router at a port of the test's own."""
+    """Set the router's address to a port that only this test uses."""
     for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE, "RMW_IMPLEMENTATION"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
@@ -31,7 +31,7 @@ ClosableT = TypeVar("ClosableT", Process, "Bridge")
 
 
 class Bridge:
-    """A bridge in a thread of its own."""
+    """A bridge in a separate thread."""
 
     def __init__(self, bridge_id: str, *, allowed: tuple[str, ...] = (), denied: tuple[str, ...] = ()) -> None:
         self.log: list[LogRecord] = []
@@ -55,7 +55,7 @@ class Bridge:
             self._loop.close()
 
     def close(self) -> None:
-        """Take it away."""
+        """Stop the bridge."""
         if self._thread.is_alive():
             assert self._task is not None
             self._loop.call_soon_threadsafe(self._task.cancel)
@@ -70,11 +70,11 @@ class Networks:
         self._closables: list[Process | Bridge] = []
 
     def dds(self, name: str) -> Process:
-        """Create a process over DDS."""
+        """Create a process that uses DDS."""
         return self._track(Process(name))
 
     def zenoh(self, name: str) -> Process:
-        """Create a process over Zenoh."""
+        """Create a process that uses Zenoh."""
         return self._track(Process(name, wire="zenoh"))
 
     def bridge(self, bridge_id: str = "b0", **names: tuple[str, ...]) -> Bridge:
@@ -86,7 +86,7 @@ class Networks:
         return self.dds if network == "dds" else self.zenoh
 
     def close(self) -> None:
-        """End all."""
+        """Close all processes and bridges."""
         for closable in self._closables:
             closable.close()
 

@@ -52,9 +52,8 @@ def test_topic_messages_are_bridged_once_and_in_order(networks, source, target):
     for word in words:
         publisher.publish(String(data=word))
     spin_all(lambda: len(received_here) >= len(words), here, there)
-    back = here.node.create_publisher(
-        String, "chatter", EVERYTHING
-    )  # what went over before would have come back by now
+    # A message that the bridge sent back would arrive before the message of this publisher.
+    back = here.node.create_publisher(String, "chatter", EVERYTHING)
     spin_all(lambda: back.get_subscription_count() >= 2, here, there)
     back.publish(String(data="end"))
     spin_all(lambda: "end" in received_there and "end" in received_here, there, here)
@@ -72,7 +71,7 @@ def test_bridged_node_is_listed_with_its_publishers_until_it_closes(networks, so
     def reported():
         return here.node.get_publishers_info_by_topic("/far/chatter")
 
-    # On DDS whose an endpoint is comes after the endpoint itself.
+    # DDS announces an endpoint before its node.
     spin_all(lambda: [endpoint.node_name for endpoint in reported()] == ["there"], here)
     (reported_endpoint,) = reported()
     assert reported_endpoint.topic_type == "std_msgs/msg/String"
@@ -167,7 +166,7 @@ def test_first_message_of_second_publisher_on_bridged_topic_is_not_lost(networks
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
 def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, source, target):
-    """Once the way is open; on a busy machine a second is not enough for all to be acknowledged."""
+    """Messages are published once the bridge is connected; a busy machine needs over a second to acknowledge all."""
     monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", SECONDS)
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
@@ -289,7 +288,7 @@ def test_outlet_reports_failed_publish_and_sends_next_message():
 
 
 def test_lost_endpoint_triggers_new_discovery():
-    """Long before the lease of its participant is over."""
+    """The discovery starts long before the lease of the participant expires."""
     messages = []
 
     class Transport:
@@ -386,7 +385,7 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
         spin_all(lambda: stranger.matching_status.matching and here.node.count_publishers("/odd"), here)
         (endpoint,) = here.node.get_publishers_info_by_topic("/odd")
         assert endpoint.topic_type_hash == type_hash
-        for number, gid in enumerate((token.gid, bytes(16)), 1):  # the second as programs that make up their gids
+        for number, gid in enumerate((token.gid, bytes(16)), 1):  # the second GID is made up, as by some programs
             stranger.put(b"\0\1\0\0abc%d" % number, attachment=attachment.write(number, 2, gid))
         spin_all(lambda: len(received) == 2, here)
         announced.undeclare()
@@ -396,7 +395,7 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
 
 @pytest.mark.parametrize(("expects", "seconds"), [(False, 1.0), (True, 10.0)])
 def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, expects, seconds):
-    """A very busy machine matches late, and must not close publishers whose subscribers are about to match."""
+    """On a very busy machine, subscribers match late. Their publishers must not be closed before that."""
     now = [1000.0]
     monkeypatch.setattr("linkwright.bridge.mirrors.time", SimpleNamespace(monotonic=lambda: now[0]))
     graph = Graph()
@@ -445,7 +444,7 @@ def test_topic_that_cannot_be_bridged_is_reported_once(networks):
     bridge = networks.bridge()
     there, here = networks.dds("there"), networks.zenoh("here")
     strange = Publisher(there.node.handle, "strange_msgs/msg/Odd", "/odd", QoSProfile(10))
-    strange.raw = True  # and without a hash, as those of Humble
+    strange.raw = True  # the type has no hash, as in Humble
     there.node.handle.add(strange)
     spin_all(lambda: "there" in here.node.get_node_names() and bridge.log, here, there)
     (logged,) = (record.text for record in bridge.log)

@@ -17,7 +17,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
 from linkwright.nodes.options import EXECUTABLES, NodeOptions
-from tests.leaving import UPGRADE, ask_and_leave
+from tests.leaving import UPGRADE, request_and_reset
 from tests.waiting import SECONDS, eventually
 
 V1 = ("foxglove.websocket.v1",)
@@ -67,7 +67,7 @@ class Setup:
             self.port = free.getsockname()[1]
         self.bridge = FoxgloveBridge(self.graph, NodeOptions(parameters={"port": self.port, **parameters}))
 
-    async def offers(self, topic: str) -> None:
+    async def wait_until_offered(self, topic: str) -> None:
         """Wait until the bridge has seen a topic."""
         channels = self.bridge._resources.channels
         await eventually(lambda: topic in [channel.advertisement()["topic"] for channel in channels.all()])
@@ -99,7 +99,7 @@ async def test_server_socket_is_closed_when_startup_is_interrupted(steps):
     for _ in range(steps):
         await asyncio.sleep(0)
     setup.bridge.close()
-    assert setup.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
+    assert setup.bridge._listener.fileno() == -1  # closed at once, because the loop may end here
     await asyncio.wait([setup.bridge._server_task])
     await setup.graph.close()
 
@@ -111,7 +111,7 @@ def test_executable_is_registered_for_launch_files():
 async def test_new_client_receives_server_info_and_channels():
     async with bridge_setup() as setup:
         setup.node.create_publisher(String, "/chatter", 10)
-        await setup.offers("/chatter")
+        await setup.wait_until_offered("/chatter")
         for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
             async with setup.client((protocol,)) as client:
                 assert client.socket.protocol == protocol
@@ -246,7 +246,7 @@ async def test_subscription_to_all_parameters_keeps_the_others_when_one_name_is_
 async def test_connection_graph_is_sent_and_updated():
     async with bridge_setup() as setup, setup.client() as client:
         setup.node.create_publisher(String, "/chatter", 10)
-        await setup.offers("/chatter")
+        await setup.wait_until_offered("/chatter")
         await client.send("subscribeConnectionGraph")
         first = await client.until("connectionGraphUpdate")
         assert {"name": "/chatter", "publisherIds": ["/robot"]} in first["publishedTopics"]
@@ -286,7 +286,7 @@ async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path,
     (share / "secret.py").write_text("secret")
     (tmp_path / "secret.png").write_bytes(b"secret")
     (share / "meshes" / "link.png").symlink_to(tmp_path / "secret.png")
-    source = tmp_path / "src" / "robot"  # as colcon build --symlink-install lays a package out
+    source = tmp_path / "src" / "robot"  # the layout of colcon build --symlink-install
     source.mkdir(parents=True)
     (source / "package.xml").write_text((share / "package.xml").read_text())
     (source / "b.stl").write_bytes(b"solid b")
@@ -382,7 +382,7 @@ async def test_whitelists_hide_other_topics_and_services():
     async with bridge_setup(**lists) as setup:
         setup.node.create_publisher(String, "/seen_one", 10)
         setup.node.create_publisher(String, "/hidden", 10)
-        await setup.offers("/seen_one")
+        await setup.wait_until_offered("/seen_one")
         async with setup.client() as client:
             assert [channel["topic"] for channel in (await client.until("advertise"))["channels"]] == ["/seen_one"]
             assert (await client.until("advertiseServices"))["services"] == []
@@ -395,7 +395,7 @@ async def test_slow_whitelist_pattern_does_not_block_bridge():
     async with bridge_setup(topic_whitelist=["/(s|ss)+", "/seen"]) as setup:
         setup.node.create_publisher(String, "/seen", 10)
         setup.node.create_publisher(String, f"/{'s' * 60}_", 10)
-        await setup.offers("/seen")
+        await setup.wait_until_offered("/seen")
         async with setup.client() as client:
             assert [channel["topic"] for channel in (await client.until("advertise"))["channels"]] == ["/seen"]
 
@@ -403,7 +403,7 @@ async def test_slow_whitelist_pattern_does_not_block_bridge():
 async def test_disconnecting_client_logs_nothing(caplog):
     async with bridge_setup() as setup:
         for headers in ("", f"{UPGRADE}Sec-WebSocket-Protocol: {V1[0]}\r\n"):
-            await ask_and_leave(setup.port, "/", headers)
+            await request_and_reset(setup.port, "/", headers)
         async with setup.client() as client:
             await client.until("serverInfo")
     assert [record.getMessage() for record in caplog.records] == []

@@ -14,7 +14,7 @@ from pathlib import Path
 from playwright.sync_api import Page
 
 SCRIPT = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
-"""A development package of the page (MPL-2.0); it is not part of any package of Linkwright."""
+"""A development dependency of the page (MPL-2.0), which no package of Linkwright contains."""
 THEMES = {"dark": "#ffffff", "light": "#000000"}
 """The page's themes, and the scene's color with the worst contrast for each."""
 

@@ -25,7 +25,7 @@ from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
 
 SECONDS = 60.0
-"""The tests' time limit: long, because a busy machine without a GPU may draw a frame in seconds."""
+"""The tests' time limit. It is long, because a busy machine without a GPU may need seconds for a frame."""
 
 Value = TypeVar("Value")
 
@@ -79,7 +79,7 @@ def run_browser(playwright: Playwright, *flags: str) -> Iterator[Browser]:
     """Run a browser that draws in software, with additional flags."""
     path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
     if path is None:
-        pytest.fail("no Chromium: `make test` fetches one, or set LINKWRIGHT_CHROMIUM")
+        pytest.fail("Chromium is missing: `make test` downloads it, or set LINKWRIGHT_CHROMIUM")
     browser = playwright.chromium.launch(executable_path=path, args=[*_FLAGS, *flags])
     yield browser
     browser.close()

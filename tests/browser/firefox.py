@@ -103,7 +103,7 @@ class Firefox:
     def __init__(self, address: str) -> None:
         self.errors: list[str] = []
         self._number = 0
-        # In another thread, because Playwright's loop counts as running in that of the test.
+        # In another thread, because Playwright's loop counts as running in the test's thread.
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()

@@ -18,7 +18,7 @@ _COLORS = 96
 
 
 def keep(page: Page, name: str) -> None:
-    """Save a page's screenshot as a small PNG, if pictures are to be kept."""
+    """Save a page's screenshot as a small PNG if images are kept."""
     if "LINKWRIGHT_KEEP_PICTURES" not in os.environ:
         return
     with Image.open(io.BytesIO(page.screenshot())) as image:

@@ -19,7 +19,7 @@ from tests.waiting import wait_until
 Result = TypeVar("Result")
 
 POLL_PERIOD = 0.05
-"""The pause in seconds between two checks of a browser, each of which costs four processes milliseconds."""
+"""The pause in seconds between two checks of a browser; each check costs four processes some milliseconds."""
 
 FILE = """\
 Visualization Manager:
@@ -46,12 +46,12 @@ def configuration(displays: str, *, distance: float = 10.0, pitch: float = 0.6, 
 
 
 class LiveViewer:
-    """A graph with a viewer and a node to publish with, in a thread of its own.
+    """A graph with a viewer and a node to publish with, in a separate thread.
 
     Attributes:
-        url: of the page.
-        node: what the test publishes and subscribes with; use it inside of `run`.
-        viewer: the viewer, likewise.
+        url: the URL of the page.
+        node: the node with which the test publishes and subscribes; use it only in `run`.
+        viewer: the viewer; use it only in `run`.
     """
 
     url: str

@@ -55,7 +55,7 @@ def violations_in_menu(page: Page) -> list[str]:
 
 
 def violations_in_dialog(page: Page, keys: str) -> list[str]:
-    """Return the violations in the dialog that some keys open."""
+    """Return the violations in the dialog that a key combination opens."""
     page.keyboard.press(keys)
     page.locator("dialog[open]").wait_for()
     found_violations = violations(page, "dialog")
@@ -75,7 +75,7 @@ def test_robot_page_and_description_panels_pass_axe(start, open_page, tmp_path: 
     page.locator(".selection-card .provenance").wait_for(state="attached")
     unfold(page)
     page.locator(".selection-card .provenance").wait_for()
-    page.locator(".inspect > button").click()  # the clicks on rows have closed it
+    page.locator(".inspect > button").click()  # the clicks on rows have closed the card of Inspect
     assert violations(page) == []
     for name in ("File", "Panels", "Share", "Colors"):
         page.get_by_role("button", name=name, exact=True).click()
@@ -96,7 +96,7 @@ RING = """() => {
   const ring = (outlineStyle !== "none" && parseFloat(outlineWidth) >= 2) || boxShadow !== "none";
   return [name, ring || document.activeElement.matches(".slider"), document.activeElement === document.body];
 }"""
-"""A slider's thumb has the ring."""
+"""Return the focused element's name, whether it has a ring (a slider's thumb has it), and whether it is the body."""
 
 
 def test_keyboard_focus_has_visible_ring(start, open_page, tmp_path: Path):

@@ -16,12 +16,12 @@ def test_argument_form_accepts_keyboard_choice_and_shows_robot(start_fresh, open
     form.wait_for()
     model = form.get_by_label("model", exact=True)
     values = {model.input_value()}
-    page.keyboard.press("ArrowDown")  # the focus is on the choice
+    page.keyboard.press("ArrowDown")  # the choice has the focus
     values.add(model.input_value())
     assert values == {"small", "large"}
     model.fill("huge")
     page.keyboard.press("Enter")
-    page.get_by_text("huge").first.wait_for()  # the error names it, and the form comes again
+    page.get_by_text("huge").first.wait_for()  # the error names the value, and the form is shown again
     form.get_by_label("model", exact=True).fill("large")
     page.keyboard.press("Enter")
     until(page, "lw.robot?.links === 1")

@@ -1,4 +1,4 @@
-"""The classroom in the page: a learner's way through two steps, in both languages, with mouse and keyboard."""
+"""The classroom in the page: a learner solves two steps, in both languages, with mouse and keyboard."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.browser.conftest import becomes, until
 
 pytestmark = [
     pytest.mark.browser,
-    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+    pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals"),
 ]
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
@@ -62,7 +62,7 @@ def test_ctrl_s_saves_source_from_any_focus(start, open_page, workspace):
         page.locator(selector).click()
         page.keyboard.press("Control+s")
         until(page, "lw.panels.source.editor.unsaved.length === 0")
-        page.keyboard.press("Control+s")  # once more does no harm
+        page.keyboard.press("Control+s")  # saving again opens no dialog
         assert page.locator("dialog").count() == 0
     page.locator(".dv-tab", has_text="Displays").click()
     page.locator(".displays-panel [role=treeitem]").first.click()
@@ -188,7 +188,7 @@ def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, w
         })"""
     )
     assert tops
-    assert all(abs(top) < 8 for top in tops), "punctuation is on the line of the code before it"
+    assert all(abs(top) < 8 for top in tops), "punctuation is on the same line as the code before it"
 
 
 DIVIDED_WORDS = r"""() => {
@@ -210,7 +210,7 @@ DIVIDED_WORDS = r"""() => {
   }
   return divided;
 }"""
-"""The words of a table that are on two lines, also those of two or three Chinese characters."""
+"""Return the words of a table that are broken into two lines, including words of two or three Chinese characters."""
 
 
 @pytest.mark.parametrize("title", ["Decide without a robot", "Another camera"])

@@ -1,4 +1,4 @@
-"""Two descriptions in one scene: the list, what is selected, and how both robots are drawn."""
+"""Two descriptions in one scene: the list, the selection, and the drawing of both robots."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return old, new
 
 
-def looks(page: Page, index: int) -> dict[str, tuple[str, float]]:
+def link_appearance(page: Page, index: int) -> dict[str, tuple[str, float]]:
     """Return color and opacity of each link of the first or second robot."""
     robots = [display["drawn"] for display in state(page, "displays") if display["class"].endswith("RobotModel")]
     visuals = {name: text["visuals"] for name, text in robots[index]["links"].items()}
@@ -79,12 +79,12 @@ def test_both_robots_are_drawn_with_difference_colors(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     green = "#009900"
-    becomes(lambda: looks(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
-    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
+    becomes(lambda: link_appearance(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
+    becomes(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert page.locator(".comparison-legend li").all_inner_texts() == ["added", "changed", "removed", "old"]
     page.get_by_label("Color the differences").uncheck()
-    becomes(lambda: set(looks(page, 0).values()), {(green, 1)})
-    becomes(lambda: set(looks(page, 1).values()), {(GRAY, 0.4)})
+    becomes(lambda: set(link_appearance(page, 0).values()), {(green, 1)})
+    becomes(lambda: set(link_appearance(page, 1).values()), {(GRAY, 0.4)})
 
 
 def pixels(page: Page) -> list[tuple[int, int, int]]:
@@ -115,7 +115,7 @@ def test_identical_old_robot_is_hidden(start, open_page, files):
     page = open_page(start("view", str(old), str(new)))
     page.get_by_text("are identical").wait_for()
     both_robots = pixels(page)
-    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both_robots) > 100, "the robot is seen"
+    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both_robots) > 100, "the robot is visible"
     show(page, "Show the old robot", on=False)
     new_only = pixels(page)
     assert [
@@ -132,10 +132,10 @@ def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_pag
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
     assert old_only != both_robots
     page.get_by_label("Opacity of the old robot").fill("1")
-    becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
+    becomes(lambda: {alpha for _, alpha in link_appearance(page, 1).values()}, {1})
     opaque = pixels(page)
     assert sum(sum(pixel) for pixel in opaque) < sum(sum(pixel) for pixel in old_only), (
-        "its gray is darker than the ground behind it"
+        "the gray of the old robot is darker than the ground behind it"
     )
     show(page, "Show the new robot", on=True)
     show(page, "Show the old robot", on=False)
@@ -150,7 +150,7 @@ def test_difference_selects_link_and_opens_both_sources(start, open_page, files)
     page.keyboard.press("Escape")
     group(page, "camera").locator("button.difference-name").click()
     page.locator(".selection-card strong", has_text="camera").wait_for()
-    assert state(page, "view.distance") == pytest.approx(distance, rel=0.05), "both spheres are of one size"
+    assert state(page, "view.distance") == pytest.approx(distance, rel=0.05), "both spheres have the same size"
     group(page, "turn", "Joint").locator(".difference-values").click()
     page.locator(".selection-card strong", has_text="arm").wait_for()
     assert "0 0 0.6" in group(page, "turn", "Joint").inner_text()
@@ -189,7 +189,7 @@ def test_git_commit_is_compared_as_old_version(start, open_page, files):
     new.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(new), "--against", "HEAD"))
     page.get_by_text("5 differences").wait_for()
-    becomes(lambda: looks(page, 1).get("camera"), (RED, 0.63))
+    becomes(lambda: link_appearance(page, 1).get("camera"), (RED, 0.63))
     group(page, "camera").get_by_role("button", name="HEAD:new.urdf:5", exact=False).click()
     becomes(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
     page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
@@ -207,7 +207,7 @@ def test_comparison_list_is_in_front_in_small_window(start, open_page, files):
     assert first is not None
     assert first["y"] + first["height"] <= panel["y"] + panel["height"]
     groups = [group.bounding_box() for group in page.locator(".difference-group").all()]
-    assert max(group["x"] + group["width"] for group in groups) > 700, "the groups are in columns"
+    assert max(group["x"] + group["width"] for group in groups) > 700, "the groups are arranged in columns"
 
 
 def test_comparison_panel_passes_axe(start, open_page, files):
@@ -224,8 +224,8 @@ def test_exported_review_shows_both_robots_list_and_joint_sliders(open_file, fil
     assert str(tmp_path) not in exported_file.read_text(encoding="utf-8")
     page = open_file(exported_file)
     assert page.locator(".comparison-count").inner_text() == "5 differences"
-    becomes(lambda: looks(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
-    assert looks(page, 0)["lidar"] == (BLUE, 1)
+    becomes(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
+    assert link_appearance(page, 0)["lidar"] == (BLUE, 1)
     assert "old.urdf:6" in group(page, "turn", "Joint").inner_text()
     assert group(page, "turn", "Joint").get_by_role("button", name="old.urdf", exact=False).count() == 0
     group(page, "camera").locator("button.difference-name").click()
@@ -234,4 +234,4 @@ def test_exported_review_shows_both_robots_list_and_joint_sliders(open_file, fil
     becomes(lambda: round(state(page, "frames")["arm"]["orientation"][0], 3), 0.707)
     assert round(state(page, "frames")["old/arm"]["orientation"][0], 3) == 0.707
     page.get_by_title("Show the new robot", exact=False).get_by_role("checkbox").uncheck()
-    becomes(lambda: sorted(looks(page, 1)), ["arm", "base", "camera"])
+    becomes(lambda: sorted(link_appearance(page, 1)), ["arm", "base", "camera"])

@@ -38,7 +38,7 @@ def test_configuration_file_is_saved_and_opened(grouped_displays, tmp_path: Path
     row(page, "display-1").click()
     page.keyboard.press("Delete")
     until(page, "lw.displays.length === 3")
-    # Nothing unsaved is lost unasked.
+    # The page asks before it discards unsaved changes.
     page.get_by_role("button", name="File", exact=True).click()
     page.keyboard.press("Enter")
     dialog = page.get_by_role("dialog", name="Unsaved changes")

@@ -44,20 +44,20 @@ def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
     assert page.locator(f'.source-line.focus[data-line="{first}"]').first.inner_text().endswith('<link name="fore">')
     assert last - first > 10
 
-    # The call that wrote it is a click away.
+    # A click opens the macro call that created the link.
     call = page.locator(".trail-step")
     assert call.inner_text() == "macro segment, called at …/arm.xacro:14"
     call.click()
     until(page, f"lw.panels.source.origin.file === {str(arm)!r}")
     assert marks(page, "origin") == [(14, 14)]
 
-    # A joint is an element of its own; the scene shows the link that it moves.
+    # A joint is a separate element; the scene selects the link that it moves.
     page.locator('.joint-of[data-joint="upper_joint"]').click()
     until(page, "lw.description.focus?.kind === 'joint' && lw.selected?.link === 'upper'")
     until(page, "lw.panels.source.origin.file.endsWith('segment.xacro') && lw.panels.source.origin.marks.length === 1")
     assert marks(page, "origin") == [SEGMENT_JOINT]
 
-    # A line of a macro belongs to an element of each call; each click selects the next one.
+    # A line of a macro belongs to one element of each call; each click selects the next of these elements.
     line = page.locator('.source-pane >> nth=0 >> .source-line[data-line="20"]')
     line.click()
     until(page, "lw.description.focus.name === 'fore_joint' && lw.selected.link === 'fore'")
@@ -79,7 +79,7 @@ def test_link_tree_is_searched_and_navigated_by_keyboard(page):
     until(page, "lw.selected.link === 'fore'")
     page.keyboard.press("Enter")
     until(page, "lw.description.focus.name === 'fore_joint'")
-    page.keyboard.press("ArrowLeft")  # folds
+    page.keyboard.press("ArrowLeft")  # folds the row
     page.wait_for_function("document.querySelectorAll('.link-row').length === 3")
 
 
@@ -87,9 +87,9 @@ def test_diagram_and_joint_table_show_and_select_all_elements(page):
     open_panel(page, "Diagram")
     until(page, "lw.panels.diagram.links === 5 && lw.panels.diagram.joints === 4")
     assert "xyz: 0 0 0.4" in page.locator('.node[data-joint="fore_joint"]').text_content()
-    assert state(page, "panels.diagram.scale") >= 10 / 11  # texts of 11 pixels have 10 on the screen
+    assert state(page, "panels.diagram.scale") >= 10 / 11  # texts of 11 pixels are at least 10 pixels high
     page.locator(".diagram").focus()
-    page.keyboard.press("0")  # all of it
+    page.keyboard.press("0")  # shows the whole diagram
     page.locator('.node[data-joint="slide_joint"] .name').click()
     until(page, "lw.description.focus.name === 'slide_joint'")
     page.locator('.node[data-link="base"] .name').click()

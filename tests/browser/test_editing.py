@@ -205,8 +205,8 @@ def test_camera_moves_to_handles_that_are_out_of_view(start, open_page, file: Pa
         return all(0 < tip["x"] < size["width"] and 0 < tip["y"] < size["height"] for tip in tips)
 
     becomes(is_in_sight, True)
-    assert state(page, "view.yaw") == yaw, "from the same side"
-    assert state(page, "view.distance") > 4, "and with the robot beside them"
+    assert state(page, "view.yaw") == yaw, "the direction of the view stays"
+    assert state(page, "view.distance") > 4, "the camera moves back, so that the robot is visible too"
 
 
 def test_joint_axis_has_only_rotation_handles(start, open_page, file: Path) -> None:

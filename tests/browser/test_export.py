@@ -49,7 +49,7 @@ def open_file(browser):
 
         page.on("request", on_request)
         page.goto(path.as_uri())
-        # Its policy lets no text be evaluated in it, as wait_for_function does.
+        # The page's policy forbids the evaluation of text, which wait_for_function needs.
         becomes(lambda: page.evaluate("() => window.linkwright?.ready === true"), True)
         return page
 
@@ -70,7 +70,7 @@ def drawn_visuals(page) -> dict:
 
 
 def assert_alike(first: dict, second: dict) -> None:
-    """Compare two drawings; the last digits may differ, because joint positions are computed from transforms."""
+    """Assert that two drawings are equal up to rounding, because joint positions are computed from transforms."""
     assert first.keys() == second.keys()
     for name, shapes in first.items():
         for a, b in zip(shapes, second[name], strict=True):
@@ -117,7 +117,7 @@ def test_exported_sliders_move_joints_and_mimic_joints(open_file, tmp_path):
     slider = page.get_by_role("slider", name="open", exact=True)
     slider.focus()
     slider.fill("0.4")
-    until(page, "lw.joints.open > 0.39")  # positions count from the next frame on
+    until(page, "lw.joints.open > 0.39")  # the positions change in the next frame
     assert state(page, "joints") == pytest.approx({"turn": 0.0, "open": 0.4, "open_too": -0.75})
     assert state(page, "frames")["right"]["position"] == pytest.approx([0.95, 0, 1.25], abs=1e-5)
     field = page.get_by_role("textbox").first
@@ -202,7 +202,7 @@ def test_viewer_exports_current_joints_and_view(live, open_page, open_file, tmp_
     path = save_from_menu(page, "Export HTML…", tmp_path)
     assert path.name == "gripper.html"
     exported_page = open_file(path)
-    # As the joints are, not where a slider would begin
+    # The current positions of the joints, not the initial positions of the sliders.
     assert state(exported_page, "joints") == pytest.approx({"turn": 0.0, "open": 0.3, "open_too": -0.55}, abs=1e-5)
     assert state(exported_page, "view")["distance"] == pytest.approx(state(page, "view")["distance"])
     assert_alike(drawn_visuals(exported_page), drawn_visuals(page))

@@ -40,7 +40,7 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Firefox]]:
         def run(*, headless: bool) -> Firefox:
             skip_reason = "no Firefox" if firefox.find() is None else None
             if not skip_reason and not headless and not firefox.can_show_windows():
-                skip_reason = "neither a display nor Xvfb, without which Firefox has no WebGL"
+                skip_reason = "no display and no Xvfb for Firefox's WebGL"
             if skip_reason and "CI" in os.environ:
                 pytest.fail(f"{skip_reason}, which .ci/run installs")
             if skip_reason:
@@ -65,11 +65,11 @@ def test_firefox_draws_and_moves_robot(start, launch, tmp_path):
         return reds / (image.width * image.height)
 
     wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=POLL_PERIOD)
-    # Tabs are walked by keys.
+    # The arrow keys move the focus between tabs.
     browser.evaluate("document.querySelector('[data-tab-panel-id=displays]').focus()")
     browser.press(RIGHT, ENTER)
     browser.until("document.querySelector('[data-tab-panel-id=links][aria-selected=true]')")
-    # Sliders too, whose thumbs are seen.
+    # The arrow keys move the thumb of a slider too.
     browser.evaluate("document.querySelector('[data-joint=hinge] .slider').focus()")
     orientation = browser.evaluate("window.linkwright.frames.lid.orientation")
     browser.press(RIGHT, RIGHT)
@@ -124,7 +124,7 @@ def test_firefox_drags_handle(start, launch, tmp_path):
     browser.until("lw.panels.editing?.handles?.z")
     samples: list[Any] = []
 
-    def is_still() -> bool:  # the panel that came took its room from the scene
+    def is_still() -> bool:  # the new panel makes the scene smaller
         samples.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
         return len(samples) > 5 and samples[-1] == samples[-5]
 

@@ -113,7 +113,7 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     assert drawing["Field"] == {"contents": 1, "corners": 3, "bounds": {"min": [-3, -3, 1], "max": [-1, -1, 1]}}
     assert drawing["Sonar"]["bounds"]["max"] == pytest.approx([2, 2, 3], abs=1e-2)
     assert drawing["Sonar"]["bounds"]["min"][0] == pytest.approx(0, abs=1e-6)
-    # An angular vector of 0.1 is as long as its arrow is wide and hidden.
+    # The arrow of the angular vector of 0.1 is hidden, because it would not be longer than wide.
     assert (drawing["Speed"]["arrows"], drawing["Push"]["arrows"]) == (1, 2)
     assert drawing["Speed"]["bounds"]["max"][0] == pytest.approx(2.6, abs=1e-3)
     assert drawing["Push"]["bounds"]["max"][2] == pytest.approx(3.6, abs=1e-3)

@@ -1,4 +1,4 @@
-"""Small meshes of all formats: their sizes and colors in the page are those in RViz.
+"""Small meshes of all formats: they have the same sizes and colors in the page as in RViz.
 
 Every mesh is the same box, 0.1 x 0.2 x 0.3 m with a corner at the origin, written in another way: a wrong axis, unit or
 transform shows in its bounds.
@@ -102,7 +102,7 @@ def center_color(page) -> Color:
     return color
 
 
-# near, far -> the visible color; the camera is on +x, the background 48
+# color of the near box, color of the far box, visible color; the camera is on +x, and the background is 48
 LAYERS = (
     ("1 0 0 0.5", "0 0 1 1", (128, 0, 128)),
     ("0 0 1 1", "1 0 0 0.5", (0, 0, 255)),

@@ -22,7 +22,7 @@ def test_grid_map_with_missing_cell_is_drawn(live, open_page, tmp_path):
     heights[3, 3] = np.nan
     viewer.publish("/grid_map", grid(0.2, elevation=heights.tolist()))
     drawn_expression = "lw.displays[0]?.drawn"
-    # The hole takes two triangles of each of its four squares and leaves the one across.
+    # Each of the four squares around the hole keeps only the triangle opposite the hole.
     until(page, f"{drawn_expression}?.triangles === 20 * 20 * 2 - 4 && {drawn_expression}?.lines === 2 * 20 * 21 - 4")
     until(page, f"Math.abs({drawn_expression}?.bounds?.max[2] - 1.5) < 1e-5")
     viewer.settle(page)

@@ -25,9 +25,9 @@ def switch(page, *names):
 
 def count_orange(page):
     """Return how many of some pixels on the arm's base are orange, the color of collisions."""
-    until(page, "lw.settled")  # a fine frame follows the coarse one
+    until(page, "lw.settled")  # wait for the fine frame after the coarse one
     box = page.locator(".canvas-box canvas").bounding_box()
-    free = page.locator(".stack").bounding_box()["x"] - box["x"]  # the card of Inspect is open
+    free = page.locator(".stack").bounding_box()["x"] - box["x"]  # the open card of Inspect covers the rest
     x, y = box["x"] + free / 2, box["y"] + box["height"] / 2
     colors = colors_at(page, *((x + dx, y + dy) for dx, dy in ((-40, 0), (-30, 10), (30, 10), (40, 0), (0, 25))))
     return sum(r > 100 and 0.3 * r < g < 0.8 * r and b < 0.7 * g for r, g, b in colors)
@@ -43,7 +43,7 @@ def test_masses_inertias_and_implausible_values_are_shown(page):
     # base at 0.05 with 4 kg, upper arm at 0.1 + 0.2 with 2 kg, forearm at 0.5 + 0.15 with 1 kg
     total = (4 * 0.05 + 2 * 0.3 + 1 * 0.65) / 7
     assert state(page, "invisibleProperties.totals[0]") == pytest.approx([0, 0, total], abs=1e-5)
-    assert state(page, "invisibleProperties.centers") == 4  # three links, and the whole
+    assert state(page, "invisibleProperties.centers") == 4  # three links, and the whole robot
 
     # The center follows the joints.
     page.locator('[data-joint="fore_joint"] input[type=text]').fill("1.5707963")
@@ -103,13 +103,13 @@ def test_frames_are_drawn_by_depth_and_collisions_in_contrast(page):
     distance = page.locator(".row").filter(has=page.get_by_text("Distance", exact=True)).locator("input").first
     distance.fill("3")
     distance.press("Enter")
-    until(page, "lw.view.distance === 3")  # the base is in the middle
+    until(page, "lw.view.distance === 3")  # the base is then in the center of the scene
     switch(page, "frames")
     until(page, "String(lw.invisibleProperties.frames) === '1,1,1,1,1'")
     page.locator(".inspect-depth input").fill("2")
     until(page, "String(lw.invisibleProperties.frames) === '1,1,1'")
     switch(page, "frames")
-    becomes(lambda: count_orange(page), 0)  # the base is RViz's red
+    becomes(lambda: count_orange(page), 0)  # the base has RViz's default color, red
     switch(page, "contrast")
     becomes(lambda: count_orange(page) >= 3, True)
     switch(page, "contrast")

@@ -65,7 +65,7 @@ def test_middle_drag_moves_focal_point_and_keeps_angles(page):
     drag(page, 80, 0, button="middle")
     view = state(page, "view")
     assert (view["yaw"], view["pitch"], view["distance"]) == pytest.approx((5.5, 0.33, 1.7))
-    # In the camera's plane: 2 d tan(fov/2) / height meters a pixel, to the camera's left.
+    # The point moves to the camera's left in its image plane, by 2 d tan(fov/2) / height meters per pixel.
     meters = 80 * 2 * 1.7 * math.tan(math.radians(22.5)) / scene_box(page)["height"]
     focal_point = view["focalPoint"]
     assert math.hypot(*focal_point) == pytest.approx(meters, rel=0.02)
@@ -117,7 +117,7 @@ def test_position_beyond_limits_is_clamped(page):
 
 def test_clicked_link_is_selected_with_source_location(page):
     box = scene_box(page)
-    # The lower deck's front, below the scene's middle, where nothing hides it.
+    # The front of the lower deck, below the center of the scene, where nothing hides it.
     page.mouse.click(box["x"] + box["width"] * 0.56, box["y"] + box["height"] * 0.53)
     until(page, "lw.selected !== null")
     selected = state(page, "selected")
@@ -144,7 +144,7 @@ def test_selected_link_shows_macro_call_and_values(page):
     row.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="left_wheel_link").first.locator(".row-name").click()
     until(page, "lw.selected?.link === 'left_wheel_link'")
-    # A card that would cover the robot is folded at first.
+    # A card that would cover the robot is initially folded.
     page.locator(".selection-card [aria-expanded=false]").click()
     provenance = page.locator(".selection-card .provenance")
     provenance.wait_for()

@@ -85,24 +85,24 @@ def test_sweep_moves_joints_until_stopped(page):
     page.get_by_role("button", name="Start the sweep").click()
     positions_seen = set()
 
-    def swept() -> bool:
+    def has_swept() -> bool:
         positions_seen.add(round(state(page, "joints.upper_joint"), 2))
         return len(positions_seen) >= 6 and max(positions_seen) - min(positions_seen) > 1.5
 
-    becomes(swept, True)
+    becomes(has_swept, True)
     page.get_by_role("button", name="Stop the sweep").click()
 
-    def stand() -> bool:
+    def is_standing_still() -> bool:
         positions = state(page, "joints")
         wait_two_seconds(page)
         return state(page, "joints") == positions
 
-    becomes(stand, True)
+    becomes(is_standing_still, True)
 
 
 def test_dragged_link_moves_its_joint(page):
-    # Seen along the joints' axis, from the right: x to the right of the image, z up.
-    page.keyboard.press("z")  # about the root
+    # The camera looks along the joints' axis from the right: in the image, x is to the right, and z is up.
+    page.keyboard.press("z")  # the view is about the root
     for name, value in (("Yaw", "-1.5707963"), ("Pitch", "0"), ("Distance", "2")):
         row = page.locator(".row").filter(has=page.get_by_text(name, exact=True))
         field = row.locator("input").first
@@ -113,26 +113,26 @@ def test_dragged_link_moves_its_joint(page):
     box = page.locator(".canvas-box canvas").bounding_box()
     meter = box["height"] / (2 * 2 * math.tan(math.radians(22.5)))
 
-    def at(x, z):
+    def screen_position(x, z):
         return box["x"] + box["width"] / 2 + x * meter, box["y"] + box["height"] / 2 - z * meter
 
     page.keyboard.down("Alt")
-    page.mouse.move(*at(0, 0.3))
-    until(page, "lw.description.joints === 4")  # where they turn is asked for now
-    page.mouse.move(*at(0.002, 0.3))
+    page.mouse.move(*screen_position(0, 0.3))
+    until(page, "lw.description.joints === 4")  # the page requests the axes of the joints now
+    page.mouse.move(*screen_position(0.002, 0.3))
     until(page, "lw.tool.cursor === 'grab'")
     page.mouse.down()
     for step in range(1, 9):
         angle = 0.8 * step / 8
-        page.mouse.move(*at(0.2 * math.sin(angle), 0.1 + 0.2 * math.cos(angle)))
+        page.mouse.move(*screen_position(0.2 * math.sin(angle), 0.1 + 0.2 * math.cos(angle)))
     page.mouse.up()
     page.keyboard.up("Alt")
     until(page, "Math.abs(Math.abs(lw.joints.upper_joint) - 0.8) < 0.1")
     yaw = state(page, "view.yaw")
 
-    # Without Alt the same drag turns the camera.
-    page.mouse.move(*at(0, 0.02))
+    # Without Alt, the same drag rotates the camera.
+    page.mouse.move(*screen_position(0, 0.02))
     page.mouse.down()
-    page.mouse.move(*at(0.2, 0.02), steps=4)
+    page.mouse.move(*screen_position(0.2, 0.02), steps=4)
     page.mouse.up()
     until(page, f"Math.abs(lw.view.yaw - {yaw}) > 0.05")

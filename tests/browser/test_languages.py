@@ -49,7 +49,7 @@ def test_language_switch_keeps_view_state_and_reloads_no_mesh(start, open_page):
         ".map(({ transferSize, encodedBodySize }) => transferSize < encodedBodySize)"
     )
     assert mesh_requests == [True]
-    # A reload would reset this.
+    # A reload, in contrast, clears the selection.
     page.reload()
     until(page, "lw.ready")
     assert state(page, "selection") == []

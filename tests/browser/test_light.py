@@ -37,22 +37,22 @@ def grays(start, open_page, tmp_path: Path, light: str) -> list[int]:
     box = page.locator(".canvas-box canvas").first.bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     colors = colors_at(page, *[(x, y + 0.2 * box["height"] * step / 20) for step in range(-20, 21)])
-    assert all(r == g == b for r, g, b in colors), "white stays without a tint"
+    assert all(r == g == b for r, g, b in colors), "white has no tint"
     return [r for r, _, _ in colors]
 
 
 def test_studio_light_does_not_saturate_lit_surfaces(start, open_page, tmp_path):
     camera, studio = (grays(start, open_page, tmp_path, light) for light in ("Camera", "Studio"))
-    assert max(camera) >= 254, "a face toward the camera has its own color"
+    assert max(camera) >= 254, "a face toward the camera has the given color"
     assert 225 < max(studio) < 252
-    assert studio.count(max(studio)) < len(studio) / 5, "brightness tells the shape: nothing is cut off at white"
+    assert studio.count(max(studio)) < len(studio) / 5, "the shading shows the shape: no part is clipped to white"
 
 
 BLACK = BALL.replace("1 1 1 1", "0 0 0 1")
 
 
 def column(page, across: float = 0.5) -> list[int]:
-    """Return the brightness of the scene from top to bottom, at a share of its width."""
+    """Return the brightness of the scene from top to bottom, at a fraction of its width."""
     box = page.locator(".canvas-box canvas").first.bounding_box()
     x = box["x"] + across * box["width"]
     pixels = [(x, box["y"] + box["height"] * (0.02 + 0.96 * step / 60)) for step in range(61)]
@@ -69,7 +69,7 @@ def test_default_view_shows_shape_of_black_and_white_robots(start, open_page, tm
     ball, ground = grays[16:45], column(page, 0.02)
     assert min(ground) > 60
     assert max(ground) < 245
-    assert max(ball) - min(ball) > 25, "the ball is round, whatever its color"
+    assert max(ball) - min(ball) > 25, "the shading shows that the ball is round"
     assert max(abs(ground[30] - gray) for gray in ball) > 40
 
 
@@ -90,4 +90,4 @@ def test_background_color_can_be_chosen(start, open_page, tmp_path):
     page.get_by_role("treeitem").filter(has_text="Backdrop").locator("select").select_option("Color")
     background.wait_for()
     until(page, "lw.settled")
-    assert column(page, 0.02)[:2] == [0x30] * 2, "lines of the grid are below"
+    assert column(page, 0.02)[:2] == [0x30] * 2, "the top of the scene has the background color"

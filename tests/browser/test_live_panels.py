@@ -104,7 +104,7 @@ MONITOR = "lw.panels.monitor"
 
 def test_topic_fields_are_plotted(page: Page, robot: Robot):
     show(page, "Plots")
-    # The fields of a topic are offered with the names that its messages give.
+    # The list offers the fields of a topic with the names from its messages.
     page.get_by_role("button", name="Add a series").click()
     page.keyboard.type("/joint")
     page.get_by_role("option", name="/joint_states").wait_for()
@@ -116,13 +116,13 @@ def test_topic_fields_are_plotted(page: Page, robot: Robot):
     assert (first["name"], first["last"]) == ("/joint_states.position[shoulder]", 0.25)
     assert -1 <= second["last"] <= 1
     becomes(lambda: len(colors_drawn(page)), 2)
-    # A pause holds the window, while samples are taken on.
+    # During a pause the time window stays, and sampling continues.
     page.get_by_role("button", name="Pause").first.click()
     window = page.evaluate("window.linkwright.panels.monitor.window")
     count = page.evaluate("window.linkwright.panels.monitor.plots[0].series[1].samples")
     until(page, f"{MONITOR}.plots[0].series[1].samples > {count + 200}")
     assert page.evaluate("window.linkwright.panels.monitor.window") == window
-    # What is seen is what is saved.
+    # The file contains the samples of the visible time window.
     with page.expect_download() as download:
         page.get_by_role("button", name="Save the values of this plot").click()
     rows = list(csv.reader(download.value.path().read_text().splitlines()))
@@ -131,7 +131,7 @@ def test_topic_fields_are_plotted(page: Page, robot: Robot):
     assert all(window[0] - 1e-5 <= float(row[0]) <= window[1] + 1e-5 for row in rows[1:])
     page.get_by_role("button", name="Resume").click()
     until(page, f"{MONITOR}.window[1] > {window[1]}")
-    # Each series counts for itself, and closing the panel ends the subscriptions.
+    # Removing a series ends its subscription, and closing the panel ends all of them.
     page.get_by_role("button", name="Remove /joint_states.position[shoulder]").click()
     wait_until(lambda: subscribers(robot, "/joint_states") == 1)
     show(page, "Plots")
@@ -144,7 +144,7 @@ def test_plot_library_loads_with_first_plot_and_its_style(page: Page):
         "performance.getEntriesByType('resource').filter(({ name }) => name.includes('plot-library')).length"
     )
     assert page.evaluate(request_count) == 0
-    # Without its style sheet, it would be a heap of boxes for a moment.
+    # The plot must not appear before its style sheet is loaded.
     page.evaluate(
         """() => new MutationObserver((_, observer) => {
             const drawn = document.querySelector(".u-over");
@@ -200,12 +200,12 @@ def test_topics_are_measured_and_opened(page: Page, robot: Robot):
     message = page.locator(".topic-message:visible")
     message.get_by_text("[0]").wait_for()
     becomes(lambda: "0.25" in message.inner_text(), True)
-    # A number of the message is plotted with a click.
+    # A click plots a number of the message.
     message.locator(".message-row", has_text="[0]").hover()
     message.get_by_role("button", name="Plot this field").first.click()
     until(page, f"{MONITOR}.plots[0].series[0].name === '/joint_states.position[0]'")
     until(page, f"{MONITOR}.plots[0].series[0].last === 0.25")
-    # The Topics panel is behind the plots now, and measures nothing.
+    # The Topics panel is now hidden behind the plots, and does not measure rates.
     wait_until(lambda: subscribers(robot, "/left/current") == 1)
 
 
@@ -226,7 +226,7 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
         lambda: sorted(neighbors.evaluate_all("elements => elements.map((element) => element.dataset.id)")),
         ["node:/arm", "node:/planner"],
     )
-    # A node that comes is drawn without being asked for.
+    # A new node is drawn without a reload.
     robot.live.run(lambda: robot.live.node.graph.create_node("late").create_publisher(FLOAT, "/left/current", 10))
     page.locator(".vertex[data-id='node:/late']").wait_for()
     page.get_by_role("checkbox", name="Group").check()
@@ -302,7 +302,7 @@ def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
     page.keyboard.up("j")
     wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
     robot.velocities.clear()
-    # By hand: the corner at the top right is full speed and a turn to the right.
+    # With the mouse: the top right corner means full speed and a turn to the right.
     box = pad.bounding_box()
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.down()
@@ -311,7 +311,7 @@ def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
     page.mouse.up()
     wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
     robot.velocities.clear()
-    # By gamepad: the left stick, while LB is held.
+    # With a gamepad: the left stick, while LB is held.
     page.evaluate(GAMEPAD)
     page.get_by_role("checkbox", name="Gamepad").check()
     page.get_by_text("Test pad").wait_for()
@@ -321,7 +321,7 @@ def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
     page.evaluate("window.testPad.buttons[4].pressed = false")
     wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
     robot.velocities.clear()
-    # Whoever closes the page in the middle of it stops the robot.
+    # Closing the page during a command stops the robot.
     pad.focus()
     page.keyboard.down("ArrowUp")
     wait_until(lambda: len(robot.velocities) >= 2)

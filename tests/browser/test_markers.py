@@ -87,7 +87,7 @@ def test_all_marker_types_are_drawn(live, open_page, tmp_path):
     page = open_page(viewer, wait=False)
     viewer.publish("/marks", MarkerArray(markers=all_kinds(mesh)))
     until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 13")
-    viewer.settle(page)  # markers are there before they are placed
+    viewer.settle(page)  # markers are listed before they have poses
     drawing = page.evaluate("() => window.linkwright.displays[1].drawn")
     assert drawing["markers"]["a/0"] == "arrow"
     assert drawing["markers"]["a/12"] == "arrow_strip"

@@ -77,7 +77,7 @@ BROKEN = {
     "torn.glb": (b"glTF" + struct.pack("<II", 2, 1_000) + b"\0" * 12, "declares 1 000 bytes and has 24"),
     "zip.glb": (b"PK\x03\x04 and so on", "does not begin with 'glTF'"),
 }
-"""Files with what is to be said of them."""
+"""The contents of broken files, and the expected messages."""
 
 
 def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
@@ -132,8 +132,8 @@ def test_robot_without_readable_meshes_is_reported_and_shown_by_frames(start, op
     page.locator(".diagnostics").get_by_text("package 'elsewhere' not found").first.wait_for()
     banner.get_by_role("button", name="Close").click()
     assert banner.is_hidden()
-    page.get_by_role("tab", name="Diagnostics (2)").wait_for()  # the display has an error, too
+    page.get_by_role("tab", name="Diagnostics (2)").wait_for()  # the display has an error too
     file.write_text(text.replace(missing, '<visual><geometry><box size="1 1 1"/></geometry></visual>', 1))
-    page.get_by_role("tab", name="Diagnostics (1)").wait_for()  # a mesh is still not there
+    page.get_by_role("tab", name="Diagnostics (1)").wait_for()  # one mesh is still missing
     file.write_text(text.replace(missing, ""))
     page.get_by_role("tab", name="Diagnostics", exact=True).wait_for()

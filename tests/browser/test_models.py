@@ -95,7 +95,7 @@ def test_launch_files_run_from_package_folder(start, open_page, package, launch,
     assert state(page, "frames.left_wheel_link.position") == pytest.approx([0, 0.19, -0.05], abs=1e-6)
     robot_model = "lw.displays.find(({ name }) => name === 'RobotModel')"
     if links == 12:
-        # Readers have no mesh at first: the robot shows, and the row says where the file was looked for.
+        # Readers have no mesh at first: the robot is shown, and the row names the path of the missing file.
         until(page, f"{robot_model}.status.some(({{ name, level }}) => name === 'kinect_link' && level === 'error')")
         status = next(display["status"] for display in state(page, "displays") if display["name"] == "RobotModel")
         row = next(row for row in status if row["name"] == "kinect_link")
@@ -107,5 +107,5 @@ def test_launch_files_run_from_package_folder(start, open_page, package, launch,
 
 def test_top_plate_is_above_base(start, open_page):
     page = open_page(start(*launch_arguments("mbot_base.xacro")))
-    # Its visual's center is another 0.16 m above its frame: 0.32 m above base_link (tests/viewer has the shape).
+    # Its visual's center is another 0.16 m above its frame, so 0.32 m above base_link; tests/viewer tests the shape.
     assert state(page, "frames.base_link_upper.position") == pytest.approx([0, 0, 0.16], abs=1e-6)

@@ -37,7 +37,7 @@ SLOW = """() => {
   window.slow = true;
   requestAnimationFrame(hold);
 }"""
-"""Has the page keep its processor busy in each frame, as a scene does that is too much for it."""
+"""Keep the page's processor busy in each frame, as a too complex scene does."""
 
 
 @contextmanager
@@ -107,8 +107,8 @@ def test_moving_meshes_are_simplified_and_look_the_same(live, open_page, tmp_pat
     viewer.settle(page)
     np.testing.assert_array_equal(pixels(page), still)
 
-    # Coarse frames have larger pixels: along edges they differ, within surfaces hardly.
+    # Coarse frames have larger pixels: they differ along edges, but hardly within surfaces.
     difference = np.abs(image_in_motion - still).max(axis=2)
-    assert (still.max(axis=2) > 100).mean() > 0.02  # there is something to be seen
+    assert (still.max(axis=2) > 100).mean() > 0.02  # the image is not empty
     assert np.median(difference[still.max(axis=2) > 100]) < 12
     assert (difference > 60).mean() < 0.02

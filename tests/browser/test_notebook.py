@@ -78,7 +78,7 @@ def lab(tmp_path: Path):
 def test_jupyterlab_cell_shows_robot_with_working_slider(browser, lab):
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(lab)
-    page.get_by_text("(ipykernel) | Idle").wait_for()  # a cell that is run earlier is forgotten
+    page.get_by_text("(ipykernel) | Idle").wait_for()  # a cell that is run before that is lost
     page.locator(".jp-Cell .cm-content").first.click()
     page.keyboard.press("Shift+Enter")
     frame = page.wait_for_selector("iframe[title=arm]").content_frame()

@@ -31,7 +31,7 @@ OVERLAYS = (
 )
 SIZES = ((1280, 800), (1024, 768), (800, 600))
 
-# What is scrolled out of the column's sight is not seen.
+# Elements that are scrolled out of the column are not visible.
 BOXES = """(selectors) => Object.fromEntries([...selectors, ".orientation", ".scene-box"].map((selector) => {
   const element = document.querySelector(selector);
   const { left, top, right, bottom } = element.getBoundingClientRect();
@@ -39,7 +39,7 @@ BOXES = """(selectors) => Object.fromEntries([...selectors, ".orientation", ".sc
   return [selector, [left, Math.max(top, column.top), right, Math.min(bottom, column.bottom)]];
 }))"""
 
-# What a lost server, a slow line and a voice say; the page shows each of them alone more easily than together.
+# Show the notices of a lost server, a slow connection and a voice together, which the page rarely does.
 TELL = """() => {
   for (const element of document.querySelectorAll(".notice, .line-notice, .voice-notice")) {
     element.hidden = false;
@@ -73,7 +73,7 @@ def test_scene_overlays_do_not_overlap(start, open_page, tmp_path):
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
     page.locator(".selection-card").wait_for()
     unfold(page)
-    page.locator(".inspect > button").click()  # the clicks on rows have closed it
+    page.locator(".inspect > button").click()  # the clicks on rows have closed the card of Inspect
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     for width, height in SIZES:
@@ -94,7 +94,7 @@ WIDE = '<robot name="wide"><link name="base"><visual><geometry><box size="2 2 1"
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, height):
-    """A card that would cover the robot is folded; unfolded by hand, it moves the robot aside until it is closed."""
+    """A card that would cover the robot is folded. If the user unfolds it, the robot moves aside until it is closed."""
     (tmp_path / "wide.urdf").write_text(WIDE)
     page = open_page(start("view", str(tmp_path / "wide.urdf")))
     page.set_viewport_size({"width": width, "height": height})
@@ -108,7 +108,7 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
     card, fold = page.locator(".selection-card"), page.locator(".selection-card .fold")
     card.wait_for()
 
-    def covers() -> bool:
+    def card_covers_robot() -> bool:
         box = card.bounding_box()
         return state(page, "robotsRightEdge") > box["x"] - canvas.bounding_box()["x"]
 
@@ -118,8 +118,8 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
         assert card.bounding_box()["height"] < 45
         fold.click()
         becomes(lambda: state(page, "robotsRightEdge") < right_edge, True)
-        fit.click()  # where going aside is not enough
-    becomes(covers, False)
+        fit.click()  # moving aside was not enough
+    becomes(card_covers_robot, False)
     page.keyboard.press("Escape")
     card.wait_for(state="hidden")
     page.keyboard.press("Shift+F")
@@ -133,7 +133,7 @@ def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
     page.set_viewport_size({"width": 1024, "height": 768})
     page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
     until(page, "lw.settled")
-    # In the middle of the canvas it has as much room at its left as at its right.
+    # The robot is in the middle of the canvas, so its margins on the left and right are equal.
     reach, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
     page.locator(".inspect > button").click()
     page.locator(".inspect-card").wait_for()
@@ -158,25 +158,25 @@ def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, w
     page.set_viewport_size({"width": width, "height": height})
     page.keyboard.press("Shift+F")
 
-    def head() -> int:
+    def count_head_pixels() -> int:
         """Return the number of visible pixels of the head."""
         until(page, "lw.settled")
         box = page.locator(".scene-box").bounding_box()
         with Image.open(io.BytesIO(page.screenshot(clip=box))) as image:
             return sum(count for count, (r, g, b) in image.convert("RGB").getcolors(1 << 24) if g > 60 > max(r, b))
 
-    head_before = head()
+    head_before = count_head_pixels()
     assert head_before > 300
     file.write_text(TALL.replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     if height > 600:
-        becomes(lambda: head() > 0.98 * head_before, True)
-    page.keyboard.press("Shift+F")  # where going down is not enough
-    becomes(lambda: head() > 0.15 * head_before, True)
+        becomes(lambda: count_head_pixels() > 0.98 * head_before, True)
+    page.keyboard.press("Shift+F")  # moving down was not enough
+    becomes(lambda: count_head_pixels() > 0.15 * head_before, True)
     file.write_text(TALL)
     page.locator(".banner").wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(head, head_before)
+    becomes(count_head_pixels, head_before)
 
 
 def test_fit_button_shows_whole_robot(start, open_page, tmp_path):
@@ -217,6 +217,6 @@ def test_missing_fixed_frame_offers_existing_frame_and_robot_display(live, open_
     notice.get_by_text("The frame 'map' does not exist").wait_for()
     notice.get_by_role("button", name="Use odom, and show the robot").click()
     notice.wait_for(state="hidden")
-    # However long its frames take to come.
+    # The view must not depend on when the frames arrive.
     until(page, "lw.displays.length === 2 && lw.view.values.Distance < 50")
     assert abs(state(page, "view.values")["Focal Point/X"] - 8) < 1

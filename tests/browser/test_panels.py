@@ -1,4 +1,4 @@
-"""The open panels: those of the file on the first visit of a browser, and then those of the user."""
+"""The open panels: the panels of the file on the first visit of a browser, and then the user's."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path)
     wait_for_panels(page, "Time")
     open_file(page, path)
     wait_for_panels(page, "Displays", "Views")
-    # What the others leave is the scene's.
+    # The scene takes the remaining width.
     columns = ("Displays", "Views", "Diagnostics")
     becomes(lambda: [column_width(page, column) for column in columns], pytest.approx([320, 290, 290], abs=3))
     assert not is_unsaved(page)
@@ -98,7 +98,7 @@ def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_
     choose(page, "Selection")
     wait_for_panels(page, "Displays", "Selection")
     page.locator(".file-name .unsaved").wait_for()
-    choose(page, "Plots")  # none of RViz's
+    choose(page, "Plots")  # RViz does not have this panel
     page.reload()
     page.locator(".panel-tab", has_text="Plots").wait_for()
     close(page, "Plots")

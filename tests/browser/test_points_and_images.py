@@ -21,7 +21,7 @@ from tests.waiting import wait_until
 pytestmark = pytest.mark.browser
 
 SCALE = 50.0
-"""Pixels to a meter of the TopDownOrtho view: so each pixel is known in meters."""
+"""The scale of the TopDownOrtho view in pixels per meter, which gives the position of each pixel."""
 BACKGROUND = (48, 48, 48)
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 
@@ -75,11 +75,11 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
         inner = 0.2 if style == "Spheres" else 0.26
         points = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inner, 1.0), (0.27, 1.27)]
 
-        def looks(points: list[tuple[float, float]] = points) -> tuple[list[Color], bool, bool]:
+        def read_appearance(points: list[tuple[float, float]] = points) -> tuple[list[Color], bool, bool]:
             *colors, near_edge, corner = colors_from_above(page, *points)
             return colors, near_edge[1] > 100, corner == BACKGROUND
 
-        becomes(looks, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
+        becomes(read_appearance, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
     set_property(viewer, 0, ("Style",), "Flat Squares")
     set_property(viewer, 0, ("Alpha",), 0.5)
     becomes(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
@@ -113,12 +113,12 @@ def test_large_cloud_is_updated_continuously(live, open_page):
     array = np.zeros(100_000, xyz([]).dtype)
     for name in "xyz":
         array[name] = rng.uniform(-3, 3, array.size)
-    # The first comes while the page is busy starting, the rest one upon the other: the last is drawn, and all of it.
+    # The first message arrives while the page starts, and the others follow at once. The last one is drawn completely.
     for number in range(10):
         array["x"][0] = 4.0 + number  # the bounds show which message is drawn
         viewer.publish("/cloud", cloud(array))
     until(page, "lw.displays[0]?.drawn?.bounds?.[1][0] === 13 && lw.displays[0].drawn.points === 100000")
-    # From now on each is, when it has its time.
+    # Messages that arrive after the previous one is drawn are all drawn.
     for number in range(3):
         array["x"][0] = 20.0 + number
         viewer.publish("/cloud", cloud(array))
@@ -154,7 +154,7 @@ def test_map_is_drawn_and_updated(live, open_page):
     page = open_page(viewer, wait=False)
     viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
-    # The corner is at x -1, cells are half a meter wide.
+    # The corner is at x = -1, and cells are half a meter wide.
     points = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
     shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
     becomes(lambda: colors_from_above(page, *points), shades)
@@ -201,19 +201,19 @@ def test_image_has_its_own_panel(live, open_page):
     until(page, "lw.displays[0]?.drawn?.width === 40")
     assert drawing_of(page)["corner"] == [255, 0, 0, 255]
 
-    def looks() -> tuple[bool, list[Color]]:
+    def read_appearance() -> tuple[bool, list[Color]]:
         box = page.locator(".image-panel canvas").bounding_box()
         positions = [(0.4, box["height"] / 2), (0.6, box["height"] / 2), (0.5, 1.0)]
         colors = colors_at(page, *((box["x"] + share * box["width"], box["y"] + y) for share, y in positions))
         return box["height"] > box["width"] / 2, colors
 
-    # The shape is kept: above and below the image it is black.
-    becomes(looks, (True, [RED, BLUE, (0, 0, 0)]))
+    # The image keeps its proportions: the area above and below it is black.
+    becomes(read_appearance, (True, [RED, BLUE, (0, 0, 0)]))
 
     page.locator(".panel-tab", has_text="Image").locator(".tab-close").click()
     until(page, "lw.displays[0].enabled === false")
     page.locator(".image-panel").wait_for(state="detached")
-    wait_until(lambda: not viewer.viewer.displays[0].enabled)  # the page knows first
+    wait_until(lambda: not viewer.viewer.displays[0].enabled)  # the page disables the display before the server does
     viewer.run(lambda: viewer.viewer.manager.tree.check(viewer.viewer.displays[0], True))
     page.locator(".image-panel").wait_for()
     page.reload()
@@ -267,7 +267,7 @@ def test_camera_display_shows_scene_over_image(live, open_page):
     )
     viewer = live(config(*displays))
     page = open_page(viewer, wait=False)
-    # The camera is at the origin and looks along x: its z is ahead, its x right.
+    # The camera is at the origin and looks along x: its z axis points ahead, and its x axis to the right.
     viewer.place("eye", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
     viewer.publish("/eye/camera_info", camera_info(40, 30))
     info = camera_info(40, 30)
@@ -297,7 +297,7 @@ def test_depth_image_is_drawn_as_points(live, open_page):
     viewer.publish("/depth/image", placed(depth_image([[2.0, 4.0]])))
     until(page, "lw.displays[0]?.drawn?.points === 2")
     becomes(lambda: drawing_of(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
-    # A pixel is half as wide as it is far: 1 m and 2 m here.
+    # The width of a pixel is half its distance: 1 m and 2 m here.
     becomes(lambda: colors_from_above(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 

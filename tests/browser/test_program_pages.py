@@ -16,7 +16,7 @@ from tests.waiting import SECONDS
 
 pytestmark = [
     pytest.mark.browser,
-    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+    pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals"),
 ]
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
@@ -50,7 +50,7 @@ def test_program_page_is_shown_until_program_ends(page):
     (frame,) = frames_of(page)
     assert page.locator(FRAMES).is_visible()
     assert page.evaluate("document.activeElement.className") == "xterm-helper-textarea"
-    assert frame.evaluate("location.search") == ""  # the page has taken the token and the language
+    assert frame.evaluate("location.search") == ""  # the page has removed the token and the language from its address
     assert violations(page) == []
     frame.locator("canvas").first.click()
     page.keyboard.press("?")
@@ -61,12 +61,12 @@ def test_program_page_is_shown_until_program_ends(page):
     page.wait_for_selector(FRAMES, state="hidden")
     page.locator(".panel-tab", has_text="Program").click()
     page.wait_for_selector(FRAMES)
-    assert frame.evaluate("window.isFirst"), "the page was not loaded again"
+    assert frame.evaluate("window.isFirst"), "the page was not reloaded"
     page.locator(".title-bar .theme-button").click()
     page.get_by_role("menuitemcheckbox", name="Dark").click()
     (frame,) = frames_of(page)
     frame.wait_for_selector("html[data-theme=dark]", state="attached")
-    page.get_by_role("button", name="中文").click()  # loads both pages again
+    page.get_by_role("button", name="中文").click()  # reloads both pages
     page.wait_for_selector("text=程序")
     (frame,) = frames_of(page)
     assert frame.get_by_role("button", name="在标签页中打开").is_visible()

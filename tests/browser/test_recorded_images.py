@@ -47,7 +47,7 @@ def write_recording(path: Path, *, scans: bool) -> Path:
 
 @pytest.fixture
 def open_recording(start, open_page, tmp_path: Path) -> Callable[..., Page]:
-    """Return a function that opens the page of such a recording in a window of some size."""
+    """Return a function that opens such a recording in a page with the given window size."""
 
     def show(width: int, height: int, *, scans: bool) -> Page:
         program = start("view", str(write_recording(tmp_path / "drive", scans=scans)))
@@ -85,7 +85,7 @@ def test_recording_with_only_images_shows_them_in_place_of_scene(open_recording,
     switch(page, "front")
     becomes(lambda: len({box["y"] for box in boxes(page)}) == 1 and len(boxes(page)), 2)
     left_box, right_box = sorted(boxes(page), key=lambda box: box["x"])
-    assert left_box["x"] + left_box["width"] <= right_box["x"], "they are beside each other"
+    assert left_box["x"] + left_box["width"] <= right_box["x"], "the images are side by side"
 
 
 def test_image_is_beside_scene_in_small_window(open_recording):

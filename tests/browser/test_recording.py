@@ -27,7 +27,7 @@ def program(start, tmp_path: Path) -> Program:
 
 @pytest.fixture
 def page(program: Program, open_page) -> Page:
-    """Open a page that shows a robot whose transforms are published all the time."""
+    """Open a page that shows a robot whose transforms are published continuously."""
     robot_page: Page = open_page(program, wait=False)
     until(robot_page, "lw.timeline?.live && lw.timeline.sizeBytes > 1000 && lw.timeline.length > 2 && lw.frames.tip")
     return robot_page
@@ -43,7 +43,7 @@ def stop(page: Page) -> None:
     page.get_by_role("button", name="Stop recording").click()
 
 
-def is_stopped(page: Page, count: int) -> None:
+def wait_until_stopped(page: Page, count: int) -> None:
     until(page, f"lw.recording.path === '' && lw.recording.files.length === {count}")
 
 
@@ -54,7 +54,7 @@ def topics(page: Page) -> dict[str, int]:
         return {topic.name: topic.count for topic in bag.topics}
 
 
-def span(page: Page) -> float:
+def recorded_duration(page: Page) -> float:
     """Return the time from the first to the last message of the newest file, in seconds."""
     with BagReader(state(page, "recording")["files"][0]) as bag:
         return (bag.end_ns - bag.start_ns) / 1e9
@@ -67,7 +67,7 @@ def test_all_topics_are_recorded_downloaded_and_reopened(page: Page, open_page, 
     assert folder.parent == tmp_path
     until(page, "lw.recording.length >= 2")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text(str(folder))
     with page.expect_download() as download:
@@ -86,7 +86,7 @@ def test_finished_recording_opens_in_page(page: Page):
     choose(page, "Record all topics")
     until(page, "lw.recording.length >= 2")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     page.get_by_role("dialog").get_by_role("button", name="Open here").click()
     until(page, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
     page.go_back()
@@ -102,7 +102,7 @@ def test_chosen_topics_are_recorded(page: Page):
     dialog.get_by_role("button", name="Record", exact=True).click()
     until(page, "lw.recording.length >= 2")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     assert topics(page).keys() == {"/joint_states"}
 
 
@@ -113,7 +113,7 @@ def test_all_pages_show_recording_after_its_page_closes(program: Program, page: 
     page.close()
     until(other_page, "lw.recording.length >= 3")
     stop(other_page)
-    is_stopped(other_page, 1)
+    wait_until_stopped(other_page, 1)
     other_page.get_by_role("dialog").get_by_role("button", name="OK").click()
     other_page.get_by_role("button", name="Record", exact=True).click()
     name = Path(state(other_page, "recording")["files"][0]).name
@@ -122,9 +122,9 @@ def test_all_pages_show_recording_after_its_page_closes(program: Program, page: 
 
 def test_last_minutes_and_marked_range_are_saved(page: Page):
     choose(page, "Save the last minutes")
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     assert topics(page)["/robot_description"] == 1
-    full_span = span(page)
+    full_span = recorded_duration(page)
     page.get_by_role("dialog").get_by_role("button", name="OK").click()
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.live")
@@ -140,12 +140,12 @@ def test_last_minutes_and_marked_range_are_saved(page: Page):
     until(page, "lw.recording.mark && lw.recording.mark[1] > lw.recording.mark[0]")
     begin, end = state(page, "recording")["mark"]
     choose(page, "Save the marked part")
-    is_stopped(page, 2)
+    wait_until_stopped(page, 2)
     range_topics = topics(page)
     assert range_topics["/tf"]
-    assert range_topics["/robot_description"] == 1, "it is older, and needed"
-    assert 0.0 < span(page) < full_span
-    assert span(page) == pytest.approx(end - begin, abs=0.1)
+    assert range_topics["/robot_description"] == 1, "the description is older than the marked part, but needed"
+    assert 0.0 < recorded_duration(page) < full_span
+    assert recorded_duration(page) == pytest.approx(end - begin, abs=0.1)
 
 
 def test_range_is_marked_by_keys_and_cleared(page: Page):
@@ -164,7 +164,7 @@ def test_viewer_without_history_can_record(start, open_page, tmp_path: Path):
     choose(page, "Record all topics")
     until(page, "lw.recording.path !== ''")
     stop(page)
-    is_stopped(page, 1)
+    wait_until_stopped(page, 1)
     assert "/robot_description" in topics(page)
     expect(page.get_by_role("dialog")).to_contain_text("linkwright view rosbag2_")
 

@@ -55,7 +55,7 @@ def test_model_reloads_after_change_error_and_fix(start_fresh, open_page, model)
     edit(model, "<xacro:whel ", "<xacro:wheel ")
     page.get_by_text("there is no macro", exact=False).first.wait_for(state="hidden")
     assert state(page, "joints.left_wheel_joint") == joint
-    page.close()  # or it would tell the console that the server is gone
+    page.close()  # an open page would report in the console that the server is gone
     assert program.interrupt() == 130
 
 

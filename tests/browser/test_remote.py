@@ -48,7 +48,7 @@ _HELD = """
     set onmessage(take) { super.onmessage = async (event) => { await told; take(event); }; }
   };
 """
-"""For a page before its scripts: what the server says is heard when `tell` is called."""
+"""Runs before the page's scripts, and holds the server's messages until `tell` is called."""
 
 _WAITING = """async () => {
   for (let frame = 0; frame < 10; frame++) await new Promise(requestAnimationFrame);
@@ -73,7 +73,7 @@ class SlowAddress:
 def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     viewer = live(SENSES)
     viewer.place("tip", 1.0, 0.0, 0.0)
-    line = slow_line(viewer.url, 100_000.0)  # images come no larger than their panel
+    line = slow_line(viewer.url, 100_000.0)  # images are scaled to the size of their panel
     page = open_page(SlowAddress(viewer.run(line.__aenter__)), wait=False)
     until(page, "lw.displays.length === 2")
 
@@ -81,7 +81,7 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:
-        """The state while both topics are published; the last message of a silent topic is sent completely."""
+        """Publish both topics, because a silent topic's last message is sent whole; return whether both are thinned."""
         for topic, message in zip(("/cloud", "/image"), heavy, strict=True):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
@@ -100,7 +100,7 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
         )
 
     wait_until(is_thinned, SECONDS, lambda: facts)
-    # All of it comes when nothing else does.
+    # Without other traffic, all data arrives.
     until(page, "lw.displays[0].drawn.points === 50000 && document.querySelector('.line-notice').hidden")
     viewer.run(lambda: line.__aexit__(None, None, None))
 
@@ -142,7 +142,7 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     page.goto(viewer.url)
     until(page, "lw.displays.length === 2")
     viewer.publish("/image", image(64, 64))
-    # Panels that are built when they are opened may ask for more.
+    # Panels that are created when they are opened may request more files.
     for name in ("File", "Panels", "Share"):
         page.get_by_role("button", name=name, exact=True).click()
         page.keyboard.press("Escape")

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.browser
 
 MBOT = PACKAGE / "urdf" / "mbot_base.xacro"
 TERMINAL = "lw.panels.terminal"
-posix = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
+posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
 
 @pytest.fixture
@@ -47,11 +47,11 @@ def tabs(page) -> list[str]:
     return [re.sub(r" \(\d+\)", "", text) for text in page.locator(".dv-tab").all_inner_texts()]
 
 
-def is_gone(page) -> None:
+def wait_until_gone(page) -> None:
     page.locator(".notice[data-state=ended]").wait_for()
 
 
-def is_back(page) -> None:
+def wait_until_connected(page) -> None:
     page.locator(".notice[data-state=connected]").wait_for(state="attached")
 
 
@@ -68,11 +68,11 @@ def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, p
     view, panels = state(page, "view.values"), tabs(page)
 
     assert program.interrupt() == 130
-    is_gone(page)
+    wait_until_gone(page)
     assert "Start it again" in page.locator(".notice[data-state=ended]").inner_text()
     new_program = start("view", str(MBOT), "--port", port)
     assert new_program.url == program.url
-    is_back(page)
+    wait_until_connected(page)
     becomes(lambda: state(page, "joints"), joints)
     becomes(lambda: state(second, "joints"), joints)
     until(page, "lw.robot.visuals === 12 && lw.settled")
@@ -94,9 +94,9 @@ def test_restart_with_other_file_resets_view_and_keeps_panels(start, context, po
     until(page, "lw.view.distance < 1")
     panels = tabs(page)
     assert program.interrupt() == 130
-    is_gone(page)
+    wait_until_gone(page)
     start("view", str(other_file), "--port", port)
-    is_back(page)
+    wait_until_connected(page)
     until(page, "lw.robot.visuals === 12 && lw.settled")
     becomes(lambda: state(page, "view.distance"), pytest.approx(first))
     assert state(page, "joints.left_wheel_joint") == 0
@@ -121,9 +121,9 @@ def run(page, command: str) -> None:
 
 
 @posix
-@pytest.mark.parametrize("texts", [("view", str(MBOT), "--terminal"), ("learn", "ws")], ids=["view", "learn"])
-def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, shell, texts):
-    program = start(*texts, "--port", port)
+@pytest.mark.parametrize("arguments", [("view", str(MBOT), "--terminal"), ("learn", "ws")], ids=["view", "learn"])
+def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, shell, arguments):
+    program = start(*arguments, "--port", port)
     first = context.new_page()
     first.goto(program.url)
     run(first, "echo mine=$((6*7))")
@@ -133,9 +133,9 @@ def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, sh
     until(second, f"{TERMINAL}.notice?.includes('another page')")
     assert program.interrupt() == 130
     until(first, f"{TERMINAL}.notice.includes('cannot be reached')")
-    start(*texts, "--port", port)
+    start(*arguments, "--port", port)
     for page in (first, second):
-        is_back(page)
+        wait_until_connected(page)
         page.reload()
         until(page, f"{TERMINAL}.notice?.includes('another page') || /[$#] *$/.test({TERMINAL}.text ?? '')")
         current = state(page, "panels.terminal.current")
@@ -149,22 +149,22 @@ def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, sh
 
 @posix
 def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
-    """The program notices the loss only after seconds, in which another page could take the terminal."""
+    """The program notices the loss only after seconds; the page must keep its terminal in that time."""
     sockets = []
 
-    def through(page_end) -> None:
+    def forward_socket(page_end) -> None:
         page_end.connect_to_server()
-        page_end.on_close(lambda *_: None)  # the program's end stays open
+        page_end.on_close(lambda *_: None)  # the connection to the program stays open
         sockets.append(page_end)
 
     page = context.new_page()
-    page.route_web_socket(re.compile("/ws"), through)
+    page.route_web_socket(re.compile("/ws"), forward_socket)
     page.goto(start("view", str(MBOT), "--terminal").url)
     run(page, "echo mine=$((6*7))")
     wait_for_text(page, "mine=42")
     sockets[0].close()
     page.locator(".notice[data-state=reconnecting]").wait_for()
-    is_back(page)
+    wait_until_connected(page)
     until(page, f"{TERMINAL}.notice === ''")
     assert len(sockets) == 2
     run(page, "echo again=$((6*7))")
@@ -178,7 +178,7 @@ def test_token_is_not_sent_to_program_without_it(start, context, port, monkeypat
     page.on("request", lambda request: urls.append(request.url))
     page.on("websocket", lambda socket: urls.append(socket.url))
     assert program.interrupt() == 130
-    is_gone(page)
+    wait_until_gone(page)
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "of-another-user"))
     other_program = start("view", str(MBOT), "--port", port)
     assert other_program.url != program.url

@@ -55,7 +55,7 @@ RECTANGLE = """([selector, part, text]) => {
   const { x, y, width, height } = found?.getBoundingClientRect() ?? {};
   return width > 0 ? { x, y, width, height } : null;
 }"""
-"""Find and measure in one call, because a resized window builds all elements again, and those found before are gone."""
+"""Find and measure an element in one call, because a resized window creates all elements again."""
 
 
 def box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:
@@ -105,7 +105,7 @@ def test_displays_filter_does_not_overlap_tabs(open_window_of_size):
         box(page, ".displays-panel .search-box"),
     )
     assert filter_["y"] >= tabs["y"] + tabs["height"]
-    assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "it is beside the buttons"
+    assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "the filter is beside the buttons"
 
 
 @pytest.mark.parametrize("width", [360, 390])
@@ -153,9 +153,9 @@ def test_phone_view_fits_map_until_user_moves_camera(browser, live):
 def test_open_panels_have_enough_space(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
     foot = box(page, ".foot")
-    assert foot["height"] < 45, "the last minutes and the status are one line"
+    assert foot["height"] < 45, "the last minutes and the status share one line"
     canvas = box(page, ".canvas-box")
-    assert canvas["y"] + canvas["height"] > foot["y"] - 10, "the fields of time are folded"
+    assert canvas["y"] + canvas["height"] > foot["y"] - 10, "the time fields are folded"
     page.get_by_role("button", name="Time", exact=True).click()
     page.wait_for_function("() => document.querySelector('.time-panel').offsetHeight < 45")
 
@@ -227,7 +227,7 @@ def test_tabs_are_operable_by_keyboard(open_window_of_size):
     page.keyboard.press("Delete")
     page.locator(".dv-tab", has_text="Views").wait_for(state="detached")
     assert page.evaluate(focused_label) == "Tool Properties"
-    # The scene must stay.
+    # The scene cannot be closed.
     page.locator(".dv-tab", has_text="3D View").focus()
     page.keyboard.press("Delete")
     page.locator(".canvas-box canvas").focus()
@@ -271,7 +271,7 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(open_win
 
 
 def test_tabs_beside_views_are_not_clipped_in_chinese(open_window_of_size):
-    """At 1280 pixels the third tab was clipped. A character without a font is replaced by one of the same width."""
+    """At 1280 pixels, the third tab was clipped. Characters that no font has are drawn with the same width."""
     page = open_window_of_size(1280, 800, "zh-CN")
     page.evaluate(
         """() => {

@@ -120,7 +120,7 @@ def test_robot_edits_and_text_edits_share_undo_history(start, open_page, file):
     becomes(lambda: "0.4" in leg.read_text(), True)
     page.locator(".panel-tab", has_text="Source").first.click()
     wait_for_text(page, "0.4")
-    page.mouse.move(0, 0)  # the explanation of an element below the pointer could cover the tab
+    page.mouse.move(0, 0)  # the tooltip of an element below the pointer could cover the tab
     text.focus()
     text.press("Control+z")
     text.press("Control+s")
@@ -230,7 +230,7 @@ def test_code_actions_fix_findings_and_extract_values(start, open_page, file):
     go_to(text, 4, 9)
     text.press("F12")
     until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.findings.includes('LW221')")
-    page.get_by_text("= left_joint").wait_for()  # the line is drawn again when its values arrive, below the mouse, too
+    page.get_by_text("= left_joint").wait_for()  # the line is redrawn when its values arrive
     page.locator(".cm-lintRange").first.hover()
     page.get_by_role("button", name="Fix…").click()
     choose(page, "apply all safe fixes in this file")
@@ -321,7 +321,7 @@ def test_scene_follows_unsaved_text_and_keeps_last_valid_robot(start, open_page,
     until(page, f"{EDITOR}.scene === 'errors'")
     page.get_by_text("The scene shows the last robot without errors").wait_for()
     assert page.evaluate("window.linkwright.frames.right !== undefined")
-    wait_for_text(page, '<xacro:leg name="right"/><link name=')  # the cursor has stayed
+    wait_for_text(page, '<xacro:leg name="right"/><link name=')  # the cursor did not move
     assert file.read_text() == ROBOT
     assert "error[" not in "".join(program.output)
 

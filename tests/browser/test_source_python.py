@@ -70,7 +70,7 @@ def hover(page, line: int, text: str) -> None:
 def test_findings_hover_and_completion_follow_unsaved_text(start, open_page, package):
     page = open_page(start("view", str(package / "robot.urdf.xacro")))
     text = open_walker(page)
-    until(page, f"{EDITOR}.findings.join() === 'F401'")  # rclpy is found
+    until(page, f"{EDITOR}.findings.join() === 'F401'")  # no finding about the import of rclpy
     go_to(text, 8)
     text.press("End")
     page.keyboard.insert_text("\n        self.get_logger().")
@@ -109,7 +109,7 @@ def test_symbol_is_renamed_in_all_files_and_definition_opens(start, open_page, p
     page = open_page(start("view", str(package / "robot.urdf.xacro")))
     text = open_walker(page)
     until(page, f"{EDITOR}.findings.join() === 'F401'")
-    go_to(text, 2, 19)  # in steps
+    go_to(text, 2, 19)  # in the name `steps`
     text.press("F12")
     until(page, f"{EDITOR}.file.endsWith('gait.py') && {EDITOR}.cursor === 1")
     go_to(text, 1, 5)

@@ -13,7 +13,7 @@ from tests.browser.test_description import open_panel
 
 pytestmark = [
     pytest.mark.browser,
-    pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX"),
+    pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals"),
 ]
 
 ROBOT = '<robot name="r"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>\n'
@@ -24,14 +24,14 @@ INPUT = ".terminal-screen:visible .xterm-helper-textarea"
 @pytest.fixture
 def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("SHELL", "/bin/bash")
-    monkeypatch.setenv("HOME", str(tmp_path))  # without start-up files, which print what they like
+    monkeypatch.setenv("HOME", str(tmp_path))  # without the user's start-up files, whose output varies
     path = tmp_path / "robot.urdf"
     path.write_text(ROBOT)
     return path
 
 
-def wait_for_line(page, text: str) -> None:
-    """Wait until the terminal has a line with this text."""
+def wait_for_text(page, text: str) -> None:
+    """Wait until the terminal shows a text."""
     page.wait_for_function("text => window.linkwright.panels.terminal.text?.includes(text)", arg=text, polling=50)
 
 
@@ -49,25 +49,25 @@ def test_commands_run_and_are_stopped_by_keys(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "echo 你好-$((40+2)); pwd")
-    wait_for_line(page, f"\n你好-42\n{file.parent}\n")
+    wait_for_text(page, f"\n你好-42\n{file.parent}\n")
     run(page, "sh -c 'echo be''gun; exec sleep 1000'")
-    wait_for_line(page, "\nbegun")
+    wait_for_text(page, "\nbegun")
     page.keyboard.press("Control+c")
     run(page, "echo interrupted=$?")
-    wait_for_line(page, "\ninterrupted=130")
+    wait_for_text(page, "\ninterrupted=130")
     run(page, "sh -c 'echo once'' more; exec sleep 1000'")
-    wait_for_line(page, "\nonce more")
+    wait_for_text(page, "\nonce more")
     page.keyboard.press("Control+z")
-    wait_for_line(page, "Stopped")
+    wait_for_text(page, "Stopped")
     run(page, "kill %1; env -u LINKWRIGHT_DDS linkwright topic list; echo listed=$?")
-    wait_for_line(page, "\nlisted=0")
+    wait_for_text(page, "\nlisted=0")
     columns = state(page, "panels.terminal.size.columns")
     run(page, "echo columns=$(stty size)")
-    wait_for_line(page, f"columns={state(page, 'panels.terminal.size.rows')} {columns}")
+    wait_for_text(page, f"columns={state(page, 'panels.terminal.size.rows')} {columns}")
     page.set_viewport_size({"width": 1000, "height": 700})
     until(page, f"{TERMINAL}.size.columns < {columns}")
     run(page, "clear; echo columns=$(stty size)")
-    wait_for_line(
+    wait_for_text(
         page, f"columns={state(page, 'panels.terminal.size.rows')} {state(page, 'panels.terminal.size.columns')}\n"
     )
 
@@ -80,7 +80,7 @@ def test_endless_output_does_not_block_page_or_program(start, open_page, file):
     assert state(page, "ready")
     page.keyboard.press("Control+c")
     run(page, "echo done=$((1+1))")
-    wait_for_line(page, "\ndone=2")
+    wait_for_text(page, "\ndone=2")
 
 
 def test_exited_shell_is_reported_and_restarts(start, open_page, file):
@@ -91,26 +91,26 @@ def test_exited_shell_is_reported_and_restarts(start, open_page, file):
     page.keyboard.press("Enter")
     until(page, f"{TERMINAL}.terminals[0].status === null && {TERMINAL}.notice === ''")
     run(page, "echo again=$((1+1))")
-    wait_for_line(page, "\nagain=2")
+    wait_for_text(page, "\nagain=2")
 
 
 def test_multiple_terminals_survive_reload(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "name=first; echo $name")
-    wait_for_line(page, "\nfirst")
+    wait_for_text(page, "\nfirst")
     page.get_by_role("button", name="New", exact=True).click()
     until(page, f"{TERMINAL}.current === 2")
     open_terminal(page)
     run(page, "echo second=$name.")
-    wait_for_line(page, "\nsecond=.")
+    wait_for_text(page, "\nsecond=.")
     page.reload()
     until(page, f"{TERMINAL}.text?.includes('first') && {TERMINAL}.terminals.length === 2")
     page.locator(INPUT).focus()
     run(page, "echo again=$name")
-    wait_for_line(page, "\nagain=first")
+    wait_for_text(page, "\nagain=first")
     page.get_by_role("tab", name="Terminal 2").click()
-    wait_for_line(page, "\nsecond=.")
+    wait_for_text(page, "\nsecond=.")
     page.locator(".terminal-deck").get_by_role("button", name="Close", exact=True).click()
     until(page, f"{TERMINAL}.terminals.length === 1 && {TERMINAL}.text.includes('again=first')")
 
@@ -120,12 +120,12 @@ def test_second_page_shows_terminal_owner_and_can_take_over(start, open_page, fi
     first = open_page(program)
     open_terminal(first)
     run(first, "echo mine=$((6*7))")
-    wait_for_line(first, "\nmine=42")
+    wait_for_text(first, "\nmine=42")
     second = open_page(program)
     until(second, f"{TERMINAL}.current === 1 && {TERMINAL}.notice?.includes('another page')")
     assert second.get_by_role("tab", name="Terminal 1").get_attribute("aria-selected") == "true"
     second.get_by_role("button", name="Show it here").click()
-    wait_for_line(second, "\nmine=42")
+    wait_for_text(second, "\nmine=42")
     until(first, f"{TERMINAL}.notice.includes('another page')")
 
 
@@ -134,14 +134,14 @@ def test_text_is_copied_and_pasted_by_keys(start, open_page, file):
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_terminal(page)
     run(page, "clear; echo copy-$((1+1))-me")
-    wait_for_line(page, "copy-2-me")
+    wait_for_text(page, "copy-2-me")
     page.locator(".terminal-screen:visible .xterm-screen").dblclick(position={"x": 20, "y": 8})
     page.keyboard.press("Control+Shift+C")
     becomes(lambda: page.evaluate("navigator.clipboard.readText()"), "copy-2-me")
     page.keyboard.type("echo pasted-")
     page.keyboard.press("Control+Shift+V")
     page.keyboard.press("Enter")
-    wait_for_line(page, "\npasted-copy-2-me")
+    wait_for_text(page, "\npasted-copy-2-me")
 
 
 def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_page, file):
@@ -153,7 +153,7 @@ def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_
     page.keyboard.press("Control+q")
     page.keyboard.press("Tab")
     page.keyboard.type("?f\n")
-    wait_for_line(page, "\n        ?f\n")
+    wait_for_text(page, "\n        ?f\n")
     assert state(page, "panels.terminal.focused")
     assert page.locator("dialog").count() == 0
     page.keyboard.press("Control+Shift+M")
@@ -166,7 +166,7 @@ def test_terminal_passes_axe_in_both_themes(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, r"printf '\033[31mred\033[33myellow\033[90mgrey\033[44mon blue\033[0m\n'")
-    wait_for_line(page, "\nredyellowgreyon blue")
+    wait_for_text(page, "\nredyellowgreyon blue")
     assert violations(page) == []
 
 

@@ -21,7 +21,7 @@ SECOND = 1_000_000_000
 FLOAT = get_message("std_msgs/msg/Float64")
 
 LENGTH = 30
-"""Seconds. In each are ten messages of a topic; number, frame and image all tell which second it is."""
+"""The length in seconds. Each topic has ten messages a second; number, frame and image identify the second."""
 
 
 def write_recording(folder: Path) -> Path:
@@ -77,7 +77,7 @@ def seek(page: Page, seconds: float) -> None:
 
 
 def wait_for_second(page: Page, second: int) -> None:
-    """Wait until the frame and the image are those of a second."""
+    """Wait until the frame and the image belong to a second."""
     until(page, f"Math.abs(lw.frames.tip?.position[0] - {second}) < 1e-6")
     corner = "window.linkwright.displays.find(({ drawn }) => drawn?.width === 4).drawn.corner"
     becomes(lambda: page.evaluate(corner), [*color(second), 255])
@@ -108,7 +108,7 @@ def test_dragging_slider_updates_scene_before_release(page: Page):
 def test_step_buttons_move_between_messages(page: Page):
     seek(page, 9.95)
     wait_for_second(page, 9)
-    # At each time there are three messages; a step shows all of them.
+    # There are three messages at each time; a step shows all of them.
     page.get_by_role("button", name="Next message (→)").click()
     until(page, "Math.abs(lw.timeline.position - 10) < 1e-5")
     wait_for_second(page, 10)
@@ -211,7 +211,7 @@ def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_pa
     page.get_by_role("slider", name="Time within the last minutes").click(position={"x": 3, "y": 5})
     until(page, "lw.timeline.position < 1")
     live = page.get_by_role("button", name="Live: follow the newest messages")
-    for width in (360, 390):  # phones, on which it stays in its line
+    for width in (360, 390):  # on phones, the button stays in its line
         page.set_viewport_size({"width": width, "height": 844})
         box = live.bounding_box()
         assert (box["height"], box["x"] + box["width"] <= width) == (22, True)

@@ -53,11 +53,11 @@ def other_server():
     thread.join()
 
 
-def bare(viewer) -> str:
+def url_without_query(viewer) -> str:
     return viewer.url.partition("?")[0]
 
 
-def is_let_in(page) -> None:
+def wait_until_admitted(page) -> None:
     until(page, "lw.displays.length === 1")
     assert page.locator(".door").is_hidden()
 
@@ -65,60 +65,60 @@ def is_let_in(page) -> None:
 def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     page = context.new_page()
     page.goto(viewer.url)
-    is_let_in(page)
-    becomes(lambda: page.url, bare(viewer))
+    wait_until_admitted(page)
+    becomes(lambda: page.url, url_without_query(viewer))
     page.reload()
-    is_let_in(page)
+    wait_until_admitted(page)
     second = context.new_page()
     second.goto(page.url)
-    is_let_in(second)
-    # Displays of its own are asked for in the address: it keeps that, and nothing else.
+    wait_until_admitted(second)
+    # The request for separate displays stays in the address, and nothing else does.
     second.get_by_role("group", name="Displays").get_by_text("Own").click()
-    becomes(lambda: second.url, f"{bare(viewer)}?displays=own")
-    is_let_in(second)
-    # An address of an earlier run takes nothing away.
-    second.goto(f"{bare(viewer)}?token=of-an-earlier-run")
-    is_let_in(second)
-    becomes(lambda: second.url, bare(viewer))
+    becomes(lambda: second.url, f"{url_without_query(viewer)}?displays=own")
+    wait_until_admitted(second)
+    # An outdated token in an address does not lock the browser out.
+    second.goto(f"{url_without_query(viewer)}?token=of-an-earlier-run")
+    wait_until_admitted(second)
+    becomes(lambda: second.url, url_without_query(viewer))
 
 
 def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_server):
     url, requests = other_server
     page = context.new_page()
     page.goto(viewer.url)
-    is_let_in(page)
+    wait_until_admitted(page)
     page.goto(url)
     address = urlsplit(viewer.url)
     assert requests
-    # The browser may ask for an icon too, on behalf of that server's own page.
+    # The browser may also request an icon for that server's own page.
     for request in requests:
         for secret in ("cookie:", address.netloc, address.query.partition("=")[2].lower()):
             assert secret not in request.lower()
     assert context.cookies() == []
     assert page.evaluate("() => Object.keys(localStorage)") == []
     page.go_back()
-    is_let_in(page)
+    wait_until_admitted(page)
 
 
 def test_browser_without_token_shows_form_that_accepts_it(viewer, context):
     page = context.new_page()
-    page.goto(bare(viewer))
+    page.goto(url_without_query(viewer))
     door = page.locator(".door")
     door.wait_for()
     assert "prints the address" in door.inner_text()
-    assert f"{bare(viewer)}?token=" in door.inner_text()
+    assert f"{url_without_query(viewer)}?token=" in door.inner_text()
     field = page.get_by_label("Address or token")
     field.fill("hello")
     field.press("Enter")
     becomes(door.locator(".problem").inner_text, "This text contains no token.")
-    field.fill(f"{bare(viewer)}?token={'x' * 32}")
+    field.fill(f"{url_without_query(viewer)}?token={'x' * 32}")
     field.press("Enter")
     door.get_by_text("This token is not valid", exact=False).wait_for()
     field.fill(viewer.url)
     page.get_by_role("button", name="Open", exact=True).click()
     door.wait_for(state="hidden")
-    is_let_in(page)
-    assert page.url == bare(viewer)
+    wait_until_admitted(page)
+    assert page.url == url_without_query(viewer)
     assert page.evaluate("() => document.getElementById('app').inert") is False
 
 
@@ -126,7 +126,7 @@ def test_share_menu_copies_link(viewer, context):
     context.grant_permissions(["clipboard-read", "clipboard-write"])
     page = context.new_page()
     page.goto(viewer.url)
-    is_let_in(page)
+    wait_until_admitted(page)
     page.get_by_role("button", name="Share", exact=True).click()
     page.get_by_role("menuitem", name="Copy link").click()
     page.get_by_text("Link copied").wait_for()

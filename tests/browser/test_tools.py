@@ -33,7 +33,7 @@ def test_shortcut_keys_select_and_deselect_tools(scene):
     assert scene.press("g") == "SetGoal"
     assert scene.press("Escape") == "Interact"
     assert scene.press("s") == "Select"
-    assert scene.press("m") == "Select"  # it takes all keys, as in RViz
+    assert scene.press("m") == "Select"  # the tool Select takes all keys, as in RViz
     assert scene.press("s") == "Interact"
     scene.page.get_by_role("button", name="Measure", exact=True).click()
     assert state(scene.page, "tool.class").endswith("/Measure")
@@ -188,7 +188,7 @@ def test_pause_freezes_displayed_scene(scene):
     message.header.frame_id = "base"
     scene.viewer.publish("/clicked_point", message)
     wait_until(lambda: scene.viewer.status("Clicks")["Topic"][1].startswith("1 message"))
-    scene.viewer.run(lambda: asyncio.sleep(0.5))  # in the viewer's loop: what it would do at once it has done before
+    scene.viewer.run(lambda: asyncio.sleep(0.5))  # enough for pending callbacks in the viewer's loop
     scene.viewer.settle(page)
     assert state(page, "frames.tip.position")[0] == pytest.approx(TIP[0])
     assert scene.viewer.run(scene.viewer.viewer.displays[2].data) == []
@@ -217,7 +217,7 @@ def test_keyboard_shortcuts_dialog_opens_and_closes(scene):
     page.keyboard.press("Escape")
     sheet.wait_for(state="detached")
     page.keyboard.press("F11")
-    # A page that changes its screen draws no frames to wait by.
+    # The page draws no frames while it enters or leaves full screen, so the test polls.
     becomes(lambda: page.evaluate("document.fullscreenElement?.className ?? null"), "scene-box")
     page.keyboard.press("F11")
     becomes(lambda: page.evaluate("document.fullscreenElement"), None)

@@ -75,13 +75,13 @@ def test_follower_view_follows_position_and_yaw_of_frame(scene):
     until(scene.page, "lw.view.values['Target Frame'] === 'tip'")
     assert state(scene.page, "view.camera.position") == pytest.approx(start["position"], abs=1e-6)
     half = math.sqrt(0.5)
-    scene.viewer.place("tip", *TIP, 0.0, 0.0, 0.0, half, half)  # a quarter turn about z
+    scene.viewer.place("tip", *TIP, 0.0, 0.0, 0.0, half, half)  # rotated by 90 degrees about z
     until(scene.page, "Math.abs(lw.frames.tip.orientation[2] - 0.7071) < 0.001")
     camera = state(scene.page, "view.camera")
     x, y = start["position"][0] - TIP[0], start["position"][1] - TIP[1]
     assert camera["position"][:2] == pytest.approx([TIP[0] - y, TIP[1] + x], abs=1e-5)
     assert camera["back"][2] == pytest.approx(start["back"][2])
-    scene.viewer.place("tip", *TIP, 0.0, half, 0.0, 0.0, half)  # tilted, not turned
+    scene.viewer.place("tip", *TIP, 0.0, half, 0.0, 0.0, half)  # rotated about x only
     until(scene.page, "Math.abs(lw.frames.tip.orientation[0] - 0.7071) < 0.001")
     assert state(scene.page, "view.camera.up") == pytest.approx(start["up"], abs=1e-6)
 

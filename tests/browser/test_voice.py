@@ -45,7 +45,7 @@ def _write_tone(path: Path) -> None:
 
 
 class Robot:
-    """A node that records the page's speech messages, and answers."""
+    """A node that records the page's speech messages, and responds."""
 
     def __init__(self, viewer: LiveViewer) -> None:
         self.viewer = viewer
@@ -117,7 +117,7 @@ def test_conversation_is_shown_and_commands_can_be_typed(voice_page: tuple[Robot
     assert page.locator(".voice-said").count() == 3
     field = page.get_by_label("Command as text")
     field.fill("go to the kitchen")
-    field.press("v")  # a letter where text is typed
+    field.press("v")  # a letter in a text field
     field.press("Enter")
     wait_until(lambda: robot.commands == ["go to the kitchenv"], SECONDS)
     assert robot.button_states == []
@@ -133,7 +133,8 @@ def test_talk_button_releases_when_page_loses_focus(voice_page: tuple[Robot, Pag
     wait_until(lambda: robot.button_states == [True, False], SECONDS)
     page.keyboard.up("Space")
     page.get_by_label("Open listening").check()
-    until(page, "lw.panels.voice.mode === 'open' && lw.panels.voice.peak > 0.02")  # browsers suppress steady tones
+    # The limit is low, because browsers suppress steady tones.
+    until(page, "lw.panels.voice.mode === 'open' && lw.panels.voice.peak > 0.02")
     seconds = robot.seconds
     wait_until(lambda: robot.seconds > seconds + 0.3, SECONDS)
     assert robot.button_states == [True, False]
@@ -187,7 +188,7 @@ def test_word_is_recorded_while_button_is_held(voice_page: tuple[Robot, Page], m
     page.keyboard.down("Space")
     until(page, "lw.panels.voice.recording && lw.panels.voice.peak > 0.2")
     page.keyboard.up("Space")
-    # An endless tone is not a word; it must be judged, and not be published.
+    # A continuous tone is not a word: the page must reject it, and not publish it.
     page.wait_for_selector(".word-judged:has-text(' dB, ')")
     assert robot.samples == []
 
@@ -211,7 +212,7 @@ def test_unrecognized_speaker_can_enroll_words_at_this_place(
     robot.publish_text("response", "I know none of what you say")
     page.locator(".voice-notice").get_by_role("button", name="Enroll here").click()
     page.get_by_text("0 of 2 words are enrolled here.").wait_for()
-    # Speech outside the panel does not count, and the first word can be recorded at once.
+    # Speech outside the panel is not counted, and the first word can be recorded at once.
     expect(page.get_by_role("button", name="Hold and say: stop")).to_be_focused()
     assert page.locator(".word-takes").all_text_contents() == ["0/3", "0/3"]
     for element in (page.locator(".voice-notice button"), page.locator(".voice-proposal")):

@@ -38,7 +38,7 @@ AudioWorklet.prototype.addModule = async function (url) {
   return add.call(this, url);
 };
 """
-"""A browser that takes longer than a word lasts to load what takes the sound, the first time."""
+"""Delays the first load of the browser's audio worklet by more than the length of a word."""
 _UNPLUGGED = "window.heard?.getTracks().forEach((track) => { track.stop(); track.dispatchEvent(new Event('ended')); })"
 
 
@@ -78,7 +78,7 @@ def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, see
     button.focus()
     page.keyboard.down("Space")
     until(page, "lw.panels.voice.isOpen")
-    # The sound is the browser's own: it takes its time whatever the test does.
+    # The browser plays the sound in real time.
     page.wait_for_timeout(1000 * (len(samples) / 16_000 - SILENCE + AFTER))
     page.keyboard.up("Space")
 
@@ -100,7 +100,7 @@ def test_enrolled_words_drive_and_stop_mbot(
     program = start("launch", "my_robot_voice", "voice.launch.py")
     page = open_page(program, wait=False)
     words = page.locator(".word-box summary")
-    words.wait_for()  # a robot that can be talked to opens the panel
+    words.wait_for()  # a robot with voice commands opens the panel
     page.add_init_script(_KEPT)
     page.add_init_script(_BUSY)
     page.reload()
@@ -115,7 +115,7 @@ def test_enrolled_words_drive_and_stop_mbot(
             speak(page, button, microphone, word, seed=take, speed=speed)
             verdict = row.locator(".word-judged:has-text(' dB, ')")
             verdict.wait_for()
-            # A busy machine loses sound, and reports it.
+            # The page of a busy machine loses parts of the sound, and reports that.
             while any(problem in verdict.inner_text() for problem in ("gaps", "begins or ends")):
                 speak(page, button, microphone, word, seed=take, speed=speed)
                 verdict.wait_for()
@@ -134,10 +134,10 @@ def test_enrolled_words_drive_and_stop_mbot(
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
     positions = [position(page)]
 
-    def stands() -> bool:
+    def is_standing() -> bool:
         page.wait_for_timeout(300)
         positions.append(position(page))
         return math.dist(positions[-1], positions[-2]) < 1e-3
 
-    wait_until(stands, what=lambda: positions)
+    wait_until(is_standing, what=lambda: positions)
     assert program.process.poll() is None

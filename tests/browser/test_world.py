@@ -108,11 +108,8 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     assert record["x"] + record["width"] <= page.viewport_size["width"]
     page.get_by_role("button", name="Add a model", exact=True).click()
     fields = page.get_by_role("dialog").locator(".spawn-places input")
-    assert [field.input_value() for field in fields.all()] == [
-        "3",
-        "0",
-        "0",
-    ]  # beside the crate, which reaches from -2 to 2
+    # The position is beside the crate, which extends from -2 to 2.
+    assert [field.input_value() for field in fields.all()] == ["3", "0", "0"]
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Model or file").fill("/nowhere/robot.urdf")
     dialog.get_by_role("button", name="Add a model").click()
@@ -120,7 +117,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     failure.wait_for()
     list_requested.set()
     dialog.get_by_text("No model is on the search path").wait_for()
-    assert failure.is_visible(), "a list that comes late takes nothing away"
+    assert failure.is_visible(), "a list that arrives late does not hide the error"
     (tmp_path / "seen.urdf").write_text(SEEN, encoding="utf-8")
     dialog.get_by_label("Model or file").fill(str(tmp_path / "seen.urdf"))
     dialog.get_by_role("button", name="Add a model").click()
@@ -148,7 +145,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
         page.keyboard.down(key)
     page.mouse.down()
     page.mouse.move(x + 60, y, steps=4)
-    wait_until(lambda: len(requests("/apply_link_wrench")) > 5)  # the mouse stands still, and pulls on
+    wait_until(lambda: len(requests("/apply_link_wrench")) > 5)  # the mouse keeps pulling while it stands still
     page.mouse.up()
     for key in ("Control", "Shift"):
         page.keyboard.up(key)
@@ -182,7 +179,7 @@ def test_camera_shows_world_origin_when_robot_falls_out_of_view(start, open_page
         "lw.displays.find(({ name }) => name === 'World').drawn.links['seen::base'].visuals[0].bounds.max[2] < -800"
     )
     until(page, has_fallen)
-    # Without a ground of its own, a world that is empty is looked at where the robot was put.
+    # In an empty world without a ground, the view is centered where the robot was added.
     assert abs(state(page, "view.values['Focal Point/Z']")) < 1
 
 
@@ -234,11 +231,11 @@ LAMPS = """
 
 
 def test_world_lighting_follows_chosen_light(live, open_page):
-    def lit(page) -> dict:
+    def read_light(page) -> dict:
         return page.evaluate("() => window.linkwright.displays[0].drawn.light")
 
     for choice, expected in (
-        ("Automatic", {"lighting": "Soft", "lights": 0, "shadows": 0}),  # where the tests run the processor draws
+        ("Automatic", {"lighting": "Soft", "lights": 0, "shadows": 0}),  # the CPU renders the tests
         ("Studio", {"lighting": "Studio", "lights": 1, "shadows": 1}),
         ("World", {"lighting": "World", "lights": 3, "shadows": 1}),
     ):
@@ -247,7 +244,7 @@ def test_world_lighting_follows_chosen_light(live, open_page):
         viewer.publish("/world_description", String(data=WORLD.replace("</world>", LAMPS)), DESCRIPTION_QOS)
         page = open_page(viewer)
         viewer.settle(page)
-        assert lit(page) == expected
+        assert read_light(page) == expected
 
 
 SENSING = """

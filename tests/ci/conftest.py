@@ -14,9 +14,9 @@ from tests.ci.service import Service, serving
 from tests.repositories import ARM, MACRO, PACKAGE, Repository
 
 HOSTILE_BRANCH = "$(touch${IFS}pwned)`touch${IFS}pwned`;\"'&|<x>@octocat"
-"""A name of a branch that git allows."""
+"""A branch name that git allows."""
 IMPORTABLE = ("json.py", "pip/__main__.py", "pip/__init__.py", "venv/__main__.py", "linkwright/__init__.py")
-"""Files that `python -m` and imports find, where they look into the working folder."""
+"""Files that `python -m` and imports find if they search the working folder."""
 
 
 @dataclass(frozen=True)

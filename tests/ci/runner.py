@@ -1,4 +1,4 @@
-"""A runner of composite actions, for what ours use of them: steps in bash, inputs, outputs and conditions."""
+"""A runner of composite actions with the features that our actions use: bash, inputs, outputs and conditions."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ class Runner:
 
 
 def _filled(text: str, context: Mapping[str, Any]) -> str:
-    """Return a text with the values of its expressions."""
+    """Replace the expressions in a text by their values."""
     return _EXPRESSION.sub(lambda match: str(_value(match[1], context)), text)
 
 

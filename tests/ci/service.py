@@ -20,17 +20,17 @@ class Service:
     """A service that answers requests and records them.
 
     Attributes:
-        me: the name of the token's owner; None if the token may not ask for it, as those of jobs.
+        me: the name of the token's owner; None if the token may not request it, as for tokens of jobs.
         can_write: whether the token can comment.
-        ignores_pages: whether each page of a list has all items, as those of Gitea.
+        ignores_pages: whether each page of a list has all items, as in Gitea.
         author_key: the key of a comment's author.
         name_key: the key of the author's name.
         comments: the comments, in their order.
         pulls: the pull requests by number.
         artifact: the artifact of a run, as a zip file.
         failures: the statuses with which the next requests fail.
-        requests: what was asked for: the method and the path.
-        tokens: the headers with the token, in the order of the requests.
+        requests: the method and the path of each request.
+        tokens: the header with the token of each request.
     """
 
     me: str | None = None
@@ -61,7 +61,7 @@ class Service:
         self.comments.append({"id": 100 + len(self.comments), "body": body, self.author_key: author})
 
     def answer(self, method: str, path: str, query: dict[str, list[str]], body: Any) -> tuple[int, Any]:
-        """Return the status and the content of an answer."""
+        """Return the status and the content of the response to a request."""
         routes: list[tuple[str, str, Callable[..., tuple[int, Any]]]] = [
             ("GET", r"/user", lambda: (200, {self.name_key: self.me}) if self.me else (403, {})),
             ("GET", r".*/(?:comments|notes)", lambda: (200, self._page(query))),

@@ -26,7 +26,7 @@ HEAD = "c" * 40
 
 
 def packed(comment: str | bytes = GOOD, report: str = REPORT, number: str = "5\n", **more: str) -> bytes:
-    """Return an artifact."""
+    """Return an artifact as a zip file."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in (("comment.md", comment), ("report.json", report), ("pull-request.txt", number)):

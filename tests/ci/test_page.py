@@ -19,7 +19,7 @@ PAGES = {"en": DOCS / "howto-review.md", "zh": DOCS / "zh" / "howto-review.md"}
 
 
 def files(page: Path = PAGES["en"]) -> dict[str, Any]:
-    """The YAML files of the page, by their names."""
+    """Return the YAML files of the page by name."""
     return {block.title: yaml.safe_load(block.text) for block in blocks(page) if block.language == "yaml"}
 
 

@@ -27,9 +27,9 @@ def test_check_prints_tree_of_valid_model(capsys):
 
 
 def test_checking_robot_imports_no_world_modules():
-    """Their elements and attributes are many, and making tables of them takes longer than checking a robot.
+    """Building the tables of their many elements and attributes takes longer than checking a robot.
 
-    As long takes `importlib.metadata`, which `linkwright.loading.extensions` does without.
+    The import of `importlib.metadata` takes as long, so `linkwright.loading.extensions` does not use it.
     """
     words = ["check", str(PACKAGE / "urdf" / "mbot_base.xacro")]
     loaded = loaded_by(f"from linkwright.cli import main; main({words})")

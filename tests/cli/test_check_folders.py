@@ -96,7 +96,7 @@ def test_package_files_are_read_once_for_all_descriptions(here, monkeypatch):
     files = {f"p/urdf/{name}.xacro": ROBOT_WITH_A_PROPERTY.format(name=name) for name in ("a", "b", "c")}
     write(here, {"p/package.xml": "<package><name>p</name></package>", **files})
     for name in files:
-        os.utime(here / name, (1, 1))  # what was written just now is read again
+        os.utime(here / name, (1, 1))  # files that were written just now are read again
     listed, facts = PackageContext._walk, FileFacts._walk
     monkeypatch.setattr(PackageContext, "_walk", lambda self: [walks.append(self.folder), *listed(self)][1:])
     monkeypatch.setattr(FileFacts, "_walk", lambda self: [walked.append(self.document.source.name), facts(self)][1])
@@ -177,7 +177,7 @@ def test_few_similar_findings_are_shown_separately(here, capsys):
 
 
 def test_checked_robot_is_freed_without_garbage_collector(here, monkeypatch):
-    """Counted while the next is checked, without the garbage collector, which may not come for long."""
+    """Count the robots when the next check begins; the garbage collector, which may not run for long, is off."""
     robot = _joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
     names = [f"r{number}.{ending}" for number in range(6) for ending in ("urdf", "urdf.xacro")]
     write(here, dict.fromkeys(names, robot))
@@ -542,7 +542,7 @@ def test_webots_plugin_file_is_not_a_robot(here, capsys):
 
 
 def test_same_problem_in_several_files_is_reported_once(here, capsys, monkeypatch):
-    """A package that two files need, and a model's mistake that appears in the model and in its world."""
+    """The problems are a package that two files need, and a mistake of a model that its world repeats."""
     (here / "p" / "models" / "box").mkdir(parents=True)
     box = '<model name="box"><link name="l"><pose>0 0 0 0 0</pose></link></model>'
     (here / "p" / "models" / "box" / "model.sdf").write_text(f'<sdf version="1.6">{box}</sdf>')

@@ -49,75 +49,75 @@ def _workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
 
 
-def after(line: str) -> list[str]:
+def candidates_after(line: str) -> list[str]:
     return complete(split_line(line))
 
 
 def test_command_names_are_completed() -> None:
-    assert after("linkwright ")[: len(help_texts())] == list(help_texts())
-    assert after("linkwright la") == ["launch"]
-    assert "launch" in after("/some/bin/ros2 ")
-    assert "view" not in after("ros2 ")
-    assert after("linkwright topic e") == ["echo"]
-    assert after("linkwright nonsense ") == []
+    assert candidates_after("linkwright ")[: len(help_texts())] == list(help_texts())
+    assert candidates_after("linkwright la") == ["launch"]
+    assert "launch" in candidates_after("/some/bin/ros2 ")
+    assert "view" not in candidates_after("ros2 ")
+    assert candidates_after("linkwright topic e") == ["echo"]
+    assert candidates_after("linkwright nonsense ") == []
 
 
 def test_options_and_option_values_are_completed() -> None:
-    assert "--no-open" in after("linkwright launch arm a.launch.py --")
-    assert after("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
-    assert "--times" in after("ros2 topic pub /a std_msgs/msg/String '{}' --t")
-    assert after("linkwright topic pub --rate ") == []
-    assert after("linkwright topic pub --rate 5 /a std_msgs/msg/Str") == ["std_msgs/msg/String"]
-    assert after("linkwright completion ") == ["bash", "zsh", "fish"]
+    assert "--no-open" in candidates_after("linkwright launch arm a.launch.py --")
+    assert candidates_after("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
+    assert "--times" in candidates_after("ros2 topic pub /a std_msgs/msg/String '{}' --t")
+    assert candidates_after("linkwright topic pub --rate ") == []
+    assert candidates_after("linkwright topic pub --rate 5 /a std_msgs/msg/Str") == ["std_msgs/msg/String"]
+    assert candidates_after("linkwright completion ") == ["bash", "zsh", "fish"]
 
 
 def test_packages_and_executables_are_completed() -> None:
-    assert after("linkwright pkg prefix ar") == ["arm"]
-    assert after("ros2 run arm ") == ["move"]
-    assert after("ros2 run demo_nodes_cpp ta") == ["talker"]
-    assert {"arm", "hand", "demo_nodes_cpp"} <= set(after("ros2 run "))
+    assert candidates_after("linkwright pkg prefix ar") == ["arm"]
+    assert candidates_after("ros2 run arm ") == ["move"]
+    assert candidates_after("ros2 run demo_nodes_cpp ta") == ["talker"]
+    assert {"arm", "hand", "demo_nodes_cpp"} <= set(candidates_after("ros2 run "))
 
 
 def test_launch_files_and_launch_arguments_are_completed() -> None:
-    assert after("ros2 launch ar") == ["arm", FILES]
-    assert after("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
+    assert candidates_after("ros2 launch ar") == ["arm", FILES]
+    assert candidates_after("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
     for file in ("a.launch.py", "b.launch.xml", "c_launch.yaml"):
-        assert after(f"ros2 launch arm {file} ") == ["gui:=", "speed:="]
-        assert after(f"linkwright launch arm/launch/{file} gui:=1 s") == ["speed:="]
-    assert after("linkwright launch nowhere ") == []
+        assert candidates_after(f"ros2 launch arm {file} ") == ["gui:=", "speed:="]
+        assert candidates_after(f"linkwright launch arm/launch/{file} gui:=1 s") == ["speed:="]
+    assert candidates_after("linkwright launch nowhere ") == []
 
 
 def test_interface_types_are_completed() -> None:
-    assert after("linkwright topic pub /a arm") == ["arm/msg/Grip"]
-    assert after("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
-    assert after("linkwright interface show action_tutorials_interfaces/action/F") == [
+    assert candidates_after("linkwright topic pub /a arm") == ["arm/msg/Grip"]
+    assert candidates_after("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
+    assert candidates_after("linkwright interface show action_tutorials_interfaces/action/F") == [
         "action_tutorials_interfaces/action/Fibonacci"
     ]
 
 
 def test_description_files_and_arguments_are_completed() -> None:
-    assert after("linkwright view ") == [FILES]
-    assert after("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second one
+    assert candidates_after("linkwright view ") == [FILES]
+    assert candidates_after("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second description
 
 
 def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -> None:
-    begun: list[object] = []
-    monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: begun.append(words))
-    assert after("linkwright topic echo /") == []
-    assert len(begun) == 1
-    assert after("linkwright topic echo /") == []
-    assert len(begun) == 1  # which is still under way
+    started: list[object] = []
+    monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: started.append(words))
+    assert candidates_after("linkwright topic echo /") == []
+    assert len(started) == 1
+    assert candidates_after("linkwright topic echo /") == []
+    assert len(started) == 1  # the first process still runs
     path = graph_names._path()
     path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
-    assert after("ros2 topic echo /t") == ["/tf"]
-    assert after("ros2 node info ") == ["/talker"]
-    assert after("ros2 service call ") == ["/go"]
-    assert after("ros2 action info ") == ["/turn"]
-    assert len(begun) == 1  # the file is fresh
+    assert candidates_after("ros2 topic echo /t") == ["/tf"]
+    assert candidates_after("ros2 node info ") == ["/talker"]
+    assert candidates_after("ros2 service call ") == ["/go"]
+    assert candidates_after("ros2 action info ") == ["/turn"]
+    assert len(started) == 1  # the file is fresh
     os.utime(path, (1.0, 1.0))
     path.with_suffix(".begun").unlink()
-    assert after("ros2 topic echo /t") == []
-    assert len(begun) == 2
+    assert candidates_after("ros2 topic echo /t") == []
+    assert len(started) == 2
 
 
 def test_graph_discovery_stores_names_of_running_nodes(in_graph: Callable[[Callable[[Graph], object]], None]) -> None:
@@ -145,7 +145,7 @@ def test_completion_imports_no_slow_modules() -> None:
     assert [name for name in heavy if name in loaded] == []
 
 
-@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 @pytest.mark.parametrize(
     ("line", "offered"),
     [
@@ -185,7 +185,7 @@ def test_completion_of_words_from_any_shell(words: list[str], offered: list[str]
 @pytest.mark.parametrize("quote", ["'", '"'])
 def test_completion_inside_open_quote(quote: str) -> None:
     assert complete(["linkwright", "topic", "pub", "/a", f"{quote}arm/msg/"]) == ["arm/msg/Grip"]
-    assert after(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
+    assert candidates_after(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
 
 
 ZSH_WITHOUT_ITS_COMPLETION = """
@@ -196,7 +196,7 @@ _files() { print -r -- FILES }
 """The functions of zsh's completion system, as functions that print their arguments."""
 
 
-@pytest.mark.skipif(shutil.which("zsh") is None, reason="there is no zsh")
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed")
 @pytest.mark.parametrize(("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
 def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
     typed = " ".join(f"'{word}'" for word in [*words[:-1], words[-1] + "after-the-cursor"])
@@ -211,7 +211,7 @@ def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
     assert "compdef _linkwright_complete linkwright" in result.stderr
 
 
-@pytest.mark.skipif(shutil.which("fish") is None, reason="there is no fish")
+@pytest.mark.skipif(shutil.which("fish") is None, reason="fish is not installed")
 @pytest.mark.parametrize(
     ("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
 )
@@ -234,7 +234,7 @@ def test_shell_accepts_generated_script(shell: str, capsys: pytest.CaptureFixtur
         subprocess.run([shell, "-n"], input=text + whole, text=True, check=True)
 
 
-@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 def test_missing_ros_programs_print_alternatives() -> None:
     program = "command_not_found_handle() { echo other $1; return 9; }\n"
     program += shell_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])

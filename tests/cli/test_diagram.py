@@ -1,4 +1,4 @@
-"""`linkwright diagram`: the .gv file and the picture."""
+"""`linkwright diagram`: the .gv file and the image."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ ARM = """\
 """
 MANIFEST = "<package format='3'><name>arm</name><version>1.0.0</version></package>"
 
-needs_git = pytest.mark.skipif(shutil.which("git") is None, reason="there is no git")
+needs_git = pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
 
 
 @pytest.fixture

@@ -79,7 +79,7 @@ def test_invalid_settings_are_reported_and_defaults_apply(package, capsys, text,
 def test_range_formats_only_given_lines(package, capsys):
     (package / "a.urdf").write_text("<robot name='a'>\n<link name='b'/>\n<link name='c'/>\n</robot>\n")
     assert main(["format", "--range", "3-3", "a.urdf"]) == 0
-    # The change is of both lines, for neither is like one of the formatted text.
+    # One change covers both lines, because neither equals a formatted line.
     assert (package / "a.urdf").read_text().splitlines()[2] == "  <link name='c'/>"
     assert main(["format", "--range", "1-2", "urdf"]) == 1
     assert "error[CLI306]: --range needs a single file" in capsys.readouterr().err

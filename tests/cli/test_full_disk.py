@@ -61,7 +61,7 @@ WRITING = {
 def test_command_on_full_disk_leaves_files_unchanged(
     words: Sequence[str], robot: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if words[0] == "check":  # what it mends
+    if words[0] == "check":  # give `check` something to fix
         robot.write_text(ROBOT.replace('name="a"', 'name="a" nmae="b"').replace("<robot ", "<robot version='1' "))
     for name in ("out", "out.html", "out.glb", "out.png", "out.gv", "out.pdf"):
         (robot.parent / name).write_text(OLD)
@@ -127,7 +127,7 @@ def test_recording_on_full_disk_fails_once_and_keeps_messages(tmp_path: Path, st
         fill()
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["BAG108"]
     assert " stopped: " in str(caught.value)
-    writer.write("/chatter", 1, data)  # nothing more is written, and nothing said again
+    writer.write("/chatter", 1, data)  # nothing more is written or reported
     writer.flush()
     writer.close()
     with BagReader(path) as bag:
@@ -212,7 +212,7 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
     return dict(zip(commands, map(int, exit_statuses.rstrip("]").split(",")), strict=True)), printed
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has /dev/full")
 @pytest.mark.parametrize(("redirection", "reason"), [(">/dev/full", "No space left"), (">&-", "Bad file descriptor")])
 def test_unwritable_standard_output_is_one_error(robot: Path, redirection: str, reason: str) -> None:
     statuses_by_command, printed = statuses(QUICK, robot.parent, redirection)
@@ -236,7 +236,7 @@ LONG = {
 def test_output_truncated_by_full_disk_is_an_error(
     robot: Path, unbuffered: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The disk takes the first bytes of each output."""
+    """The disk has space for only the first bytes of each output."""
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     for name, words in LONG.items():
         with (robot.parent / "out").open("w") as out, full_disk(ROOM):
@@ -253,7 +253,7 @@ def test_output_truncated_by_full_disk_is_an_error(
         assert "error[CLI202]: cannot write to standard output: File too large" in result.stderr, name
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
 def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
     commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
     statuses_by_command, printed = statuses(commands, robot.parent, "<&-")
@@ -261,7 +261,7 @@ def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
     assert "bug in Linkwright" not in printed
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has /dev/full")
 @pytest.mark.parametrize("redirection", ["2>/dev/full", "2>&-"])
 def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: str) -> None:
     for words, status in ((["check", "r.urdf"], 0), (["check", "missing.urdf"], 1)):
@@ -278,7 +278,7 @@ def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: s
         assert result.returncode == status, words
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are in use")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot remove folders that are in use")
 def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = tmp_path / "r.urdf"
     robot.write_text(ROBOT)

@@ -94,7 +94,7 @@ def work(make: Callable[[int], str], count: int, folder: Path, capsys: pytest.Ca
 def test_check_work_is_linear_in_input_size(
     make: Callable[[int], str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    work(make, 20, tmp_path, capsys)  # what is imported and worked out once
+    work(make, 20, tmp_path, capsys)  # imports modules and fills caches
     few, many = (work(make, count, tmp_path, capsys) for count in (300, 1200))
     assert many[0] < few[0] * 6
     assert many[1] < few[1] * 6 + 2000
@@ -135,7 +135,7 @@ def test_tag_attributes_are_parsed_once() -> None:
     assert positions.attribute_value_range(text, 0, "none") is None
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no named pipes")
 def test_named_pipe_beside_file_is_not_opened(tmp_path: Path) -> None:
     path = tmp_path / "r.xacro"
     path.write_text('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>')

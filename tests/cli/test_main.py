@@ -138,5 +138,5 @@ def test_command_help_is_fully_translated(verb):
         chinese = list(texts_in(parser_for(verb)))
     finally:
         set_language(None)
-        parser_for(verb)  # argparse's own words are English again
+        parser_for(verb)  # restore argparse's English texts
     assert [text for text, translation in zip(english, chinese, strict=True) if text == translation] == []

@@ -154,7 +154,7 @@ def test_node_is_renamed_if_library_has_same_name(capsys: pytest.CaptureFixture[
 
 
 def test_python_package_requires_pytest_for_tests() -> None:
-    """Without it, `colcon test` runs those of unittest, of which there are none."""
+    """Without pytest, `colcon test` runs the tests of unittest, and the package has none."""
     main(["pkg", "create", "arm", "--build-type", "ament_python", *ADA])
     call = ast.parse(Path("arm/setup.py").read_text(encoding="utf-8")).body[-1]
     assert isinstance(call, ast.Expr)

@@ -15,11 +15,11 @@ from pathlib import Path
 import pytest
 
 from linkwright.wire import dds
-from tests.begun import BEGUN, telling
+from tests.begun import BEGUN, command_that_reports
 from tests.domains import own_domain
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(not dds.is_available(), reason="there is no cyclonedds here")
+pytestmark = pytest.mark.skipif(not dds.is_available(), reason="cyclonedds is not installed")
 
 TALKER = """
 import asyncio
@@ -112,7 +112,7 @@ class TestTalkerGraph:
 
     def test_interrupt_during_startup_exits_with_130(self):
         for delay in (0.0, 0.05, 0.15, 0.3, 0.5):
-            process = start(telling("linkwright", "topic", "hz", "/chatter"))
+            process = start(command_that_reports("linkwright", "topic", "hz", "/chatter"))
             assert process.stdout is not None
             assert process.stdout.readline() == f"{BEGUN}\n"
             time.sleep(delay)
@@ -165,7 +165,7 @@ def test_latched_description_reaches_late_echo():
 
 
 def test_recording_of_unknown_type_is_played_and_echoed_raw(tmp_path: Path):
-    from rosbags.rosbag2 import StoragePlugin, Writer  # there is no wheel for Python 3.15, nor DDS
+    from rosbags.rosbag2 import StoragePlugin, Writer  # like DDS, it has no wheel for Python 3.15
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
@@ -181,8 +181,8 @@ def test_recording_of_unknown_type_is_played_and_echoed_raw(tmp_path: Path):
     try:
         wait_until(lambda: "/probe [soil_msgs/msg/Probe]" in linkwright("topic", "list", "-t"))
         raw = linkwright("topic", "echo", "--once", "--raw", "/probe")
-        assert raw.startswith(repr(bytes(data))[:-1]), "what travels is filled up to whole words"
-        linkwright("topic", "echo", "--once", "/probe", status=1)  # what is in the type is not known there
+        assert raw.startswith(repr(bytes(data))[:-1]), "the sent data is padded to whole words"
+        linkwright("topic", "echo", "--once", "/probe", status=1)  # this process does not know the type's fields
         rate = begin("topic", "hz", "/probe")
         assert rate.stdout is not None
         assert rate.stdout.readline().startswith("average rate: ")
@@ -211,7 +211,7 @@ def test_doctor_finds_problems_of_other_processes():
             check=False,
         )
         codes = [diagnostic["code"] for diagnostic in json.loads(result.stdout)["diagnostics"]]
-        # What another command subscribes to is no part of what runs; that nothing runs would be spoken of.
+        # The subscription of a command is ignored, but the publisher is not: an empty graph would be reported.
         assert codes == []
     finally:
         for process in (publisher, other):

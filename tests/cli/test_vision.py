@@ -1,4 +1,4 @@
-"""``linkwright vision detect``: output and pictures for image files."""
+"""``linkwright vision detect``: output and drawn images."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def test_detect_prints_json(image, capsys):
     assert row["detections"] == [{"class": "blue", "score": 1.0, "box": [100.0, 40.0, 130.0, 80.0]}]
 
 
-def marker(folder, dictionary):
-    """Return an image of the marker 4."""
+def write_marker_image(folder, dictionary):
+    """Write an image of the marker 4, and return its path."""
     pixels = np.full((120, 160), 255, np.uint8)
     pixels[20:80, 30:90] = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(dictionary), 4, 60)
     path = folder / "marker.png"
@@ -43,7 +43,7 @@ def marker(folder, dictionary):
 
 
 def test_aruco_detections_have_corners(tmp_path, capsys):
-    path = marker(tmp_path, cv2.aruco.DICT_4X4_50)
+    path = write_marker_image(tmp_path, cv2.aruco.DICT_4X4_50)
     assert main(["vision", "detect", path, "-m", "aruco", "--format", "json"]) == 0
     ((detection,),) = [row["detections"] for row in json.loads(capsys.readouterr().out)]
     assert detection["class"] == "4"
@@ -52,7 +52,7 @@ def test_aruco_detections_have_corners(tmp_path, capsys):
 
 @pytest.mark.parametrize("model", ["aruco", "apriltag"])
 def test_dictionary_option_selects_markers(tmp_path, capsys, model):
-    path = marker(tmp_path, cv2.aruco.DICT_6X6_250)
+    path = write_marker_image(tmp_path, cv2.aruco.DICT_6X6_250)
     assert main(["vision", "detect", path, "-m", model]) == 0
     assert capsys.readouterr().out == f"{path}: nothing found\n"
     assert main(["vision", "detect", path, "-m", model, "--dictionary", "6X6_250"]) == 0
@@ -77,8 +77,8 @@ def test_output_images_get_unique_names(image, tmp_path, capsys):
 
 def test_unreadable_image_does_not_stop_others(image, tmp_path, capsys):
     (tmp_path / "text.png").write_text("no image")
-    words = [str(tmp_path / "text.png"), str(tmp_path / "gone.png"), str(image)]
-    assert main(["vision", "detect", *words, "--model", "colors"]) == 1
+    paths = [str(tmp_path / "text.png"), str(tmp_path / "gone.png"), str(image)]
+    assert main(["vision", "detect", *paths, "--model", "colors"]) == 1
     printed = capsys.readouterr()
     assert "blue" in printed.out
     assert printed.err.count("VISION110") == 2

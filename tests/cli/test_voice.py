@@ -62,7 +62,7 @@ def recorded(name, level):
 
 
 def word(name):
-    """Return a tone with a changing pitch between noisy silences, which has the length of a word."""
+    """Return a tone of half a second with a rising pitch, between noisy silences."""
     times = np.arange(RATE // 2) / RATE
     tone = 6_000 * np.sin(2 * np.pi * (300 + 400 * times) * times) + 4_000 * np.sin(2 * np.pi * 1_500 * times)
     sound = np.concatenate((np.zeros(RATE // 2), tone, np.zeros(RATE // 2)))

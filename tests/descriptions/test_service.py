@@ -1,4 +1,4 @@
-"""The distinction of xacro and URDF, and texts that replace those of files."""
+"""The distinction of xacro and URDF, and texts that replace the texts of files."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ def test_unread_meshes_are_reported_once_per_check(without, tmp_path):
 
     assert unread_in(tmp_path / "with") == []
     without("trimesh")
-    unread = unread_in(tmp_path / "without")  # another content: what was read is kept
+    unread = unread_in(tmp_path / "without")  # with other content, because meshes that were read are cached
     assert [(diagnostic.severity, diagnostic.hint) for diagnostic in unread] == [(Severity.INFO, install_hint("mesh"))]
 
 

@@ -251,7 +251,7 @@ def test_translated_returns_same_list_in_english() -> None:
 def test_commands_accept_lang_option(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 1
     assert capsys.readouterr().err.startswith("错误[")
-    assert language() == "en", "one run does not choose for the next"
+    assert language() == "en", "the option applies to one run only"
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from tests.docs.pages import Block, blocks
 from tests.domains import own_domain
 
 PATIENCE = 90.0
-"""Seconds to wait for anything; a busy machine is slow."""
+"""The time limit in seconds, which is long enough for a busy machine."""
 
 _PROMPT = re.compile(r"\[status (\d+)\]\r?\n")
 _PAGE = re.compile(r"linkwright (launch|sim|view|drive(?!.* --(show|write)$)) |ros2 launch ")
@@ -134,10 +134,10 @@ class Terminal:
     def close(self) -> None:
         """Close the terminal's window."""
         self._shell.send_signal(signal.SIGHUP)
-        with suppress(OSError):  # the shell has ended, which another error reports
-            os.write(
-                self._terminal, b"\n"
-            )  # a shell that gets the signal just before it reads handles it after the line
+        # A shell that receives the signal just before it reads handles the signal after the next line. If the shell has
+        # ended, another error reports that.
+        with suppress(OSError):
+            os.write(self._terminal, b"\n")
         self._shell.wait(PATIENCE)
         self._reader_thread.join(PATIENCE)
         os.close(self._terminal)
@@ -254,7 +254,7 @@ class Reader:
         bad = [line for line in terminal.output.splitlines() if _BAD.search(line)]
         if outcome.error:
             assert all(outcome.error in line for line in bad)
-            assert bad, f"{terminal.line!r} did not say {outcome.error!r}:\n{terminal.output}"
+            assert bad, f"{terminal.line!r} did not print {outcome.error!r}:\n{terminal.output}"
         else:
             assert outcome.may_fail or not bad, f"{terminal.line!r}:\n{terminal.output}"
 
@@ -277,7 +277,7 @@ def write(block: Block, folder: Path) -> None:
 
 
 def _symmetric_elements(text: str) -> str:
-    """Return what the page asks the reader to write in the same way: the right wheel, the back caster."""
+    """Return the elements that the reader must write by analogy: the right wheel and the back caster."""
     elements = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
     if "left_" in elements:
         return elements.replace("left", "right").replace("0.19", "-0.19")

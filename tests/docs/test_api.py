@@ -36,7 +36,7 @@ def test_api_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert "length 0.4" in output
     assert "base_link revolute (0.0, 0.0, 0.2)" in output
     assert "root Link: base_link has 1 child(ren)" in output
-    assert re.search(r"^5\.0+$|^5\.0000\d*$|^4\.99999\d*$", output, re.MULTILINE), "0.5 x 0.1 x 0.1 m of water"
+    assert re.search(r"^5\.0+$|^5\.0000\d*$|^4\.99999\d*$", output, re.MULTILINE), "the mass of 5 liters of water"
     assert "position:\n- 0.3\n" in output
     assert "RIHS01_\nhello\n" in output
     assert "7200 3600.0 s" in output

@@ -29,7 +29,7 @@ def shown_class(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], Any]:
     def find(page: Path, name: str) -> Any:
         (text,) = (block.text for block in blocks(page) if f"class {name}(" in block.text)
         module = ModuleType("shown")
-        monkeypatch.setitem(sys.modules, "shown", module)  # where dataclasses look up the names of types
+        monkeypatch.setitem(sys.modules, "shown", module)  # dataclasses look up the names of types there
         exec(compile(text, str(page), "exec"), module.__dict__)
         return getattr(module, name)
 

@@ -84,7 +84,7 @@ def newcomer(tmp_path: Path) -> dict[str, str]:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the block is for a shell of Unix")
+@pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the block is for a Unix shell")
 def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: dict[str, str]) -> None:
     commands = "\n".join(first_screen(READMES[0]))
     with subprocess.Popen(

@@ -25,7 +25,7 @@ FOLDERS = (
     "robots", "src", "tests", "tools",
 )  # fmt: skip
 IGNORED = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
-"""Results of make, which a fresh clone does not have."""
+"""Outputs of make, which a new clone does not have."""
 
 _FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 _WORDS = re.compile(r"`([^`\n]+)`")

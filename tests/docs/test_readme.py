@@ -84,9 +84,9 @@ def script(path, text):
 
 
 def make_demo(folder, *variables):
-    """Run `make demo` in a folder of its own and, as in a terminal, in a process group of its own."""
+    """Run `make demo` in a separate folder and, as in a terminal, in a separate process group."""
     if shutil.which("make") is None or os.name == "nt":
-        pytest.skip("there is no make here")
+        pytest.skip("make is not installed")
     shutil.copy(REPOSITORY / "Makefile", folder)
     (folder / "frontend").mkdir()
     make_variables = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "VERSION")  # of the make that runs the tests

@@ -14,7 +14,7 @@ from tests.repository_tools import load_tool
 TOOL = load_tool("documented_output")
 
 
-@pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 knows no columns in launch files")
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 has no columns for launch files")
 @pytest.mark.parametrize("page", TOOL.PAGES, ids=["en", "zh"])
 def test_shown_output_is_current(page: Path) -> None:
     text = page.read_text(encoding="utf-8")

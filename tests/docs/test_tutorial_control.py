@@ -64,7 +64,7 @@ def test_first_node_drives_in_circle(load: Any) -> None:
         load("first_move").FirstMove()
         test.advance(2.0 * math.pi)  # half a turn at 0.5 rad/s
         x, y, *_ = test.robot_pose()
-        assert y == pytest.approx(2 * 0.2 / 0.5, abs=0.15), "the other side of a circle with a radius of 0.4 m"
+        assert y == pytest.approx(2 * 0.2 / 0.5, abs=0.15), "the opposite side of a circle with a radius of 0.4 m"
         assert abs(x) < 0.2
 
 

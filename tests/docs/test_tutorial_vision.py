@@ -46,7 +46,7 @@ def test_program_of_page_drives_to_red_object(tmp_path: Path):
         names["FollowColor"]()
         test.advance(20.0)
         assert test.distance() < 1.2
-        assert abs(test.commands.last.angular.z) < 0.2, "it is in the middle of the image"
+        assert abs(test.commands.last.angular.z) < 0.2, "the object is in the center of the image"
 
 
 @pytest.mark.slow

@@ -91,7 +91,7 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
         assert sum(abs(odometry.twist.twist.angular.z) for odometry in turned) > 0
         x, y, _, _, _, z, w = playground.robot_pose()
         assert math.hypot(x, y) < 0.1
-        assert abs(2.0 * math.atan2(z, w)) < 0.1, "two whole turns"
+        assert abs(2.0 * math.atan2(z, w)) < 0.1, "the robot has turned by two full turns"
         assert await tell("race one meter", 1.0) == "really?"
         assert math.hypot(*playground.robot_pose()[:2]) < 0.1
         assert await tell("yes", 8.0) == "race one meter"

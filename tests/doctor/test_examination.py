@@ -229,7 +229,7 @@ def test_message_in_missing_frame_is_reported():
     assert "static_transform_publisher" in diagnostic.hint
     near = only_diagnostic(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
     rays = [ObservedFrame(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
-    assert not codes(replace(WELL, frames=tuple(rays))), "they are in frames of the simulated world"
+    assert not codes(replace(WELL, frames=tuple(rays))), "frames of the simulated world are not reported"
     assert near.hint == "did you mean 'wheel'?"
     assert codes(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "base"),))) == []
 
@@ -399,7 +399,7 @@ def test_qos_mismatch_report_names_policy_and_endpoints():
             QoSProfile(5, ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL),
         ),
     )
-    assert codes(replace(observation, over_zenoh=True)) == []  # there it gets them
+    assert codes(replace(observation, over_zenoh=True)) == []  # over Zenoh, '/rviz' receives the messages
     diagnostic = only_diagnostic(observation, "DOC203")
     assert diagnostic.message == (
         "'/rviz' receives nothing from '/lidar' on topic '/scan', because their quality of service is incompatible"

@@ -80,7 +80,7 @@ async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) 
 
 
 async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> None:
-    """Silent publishers, and publishers of equal commands, do not contradict."""
+    """Silent publishers and publishers of equal commands do not contradict each other."""
     node, other, alike = (joined.create_node(name) for name in ("keys", "planner", "alike"))
     idle = joined.create_node("idle")
     idle.create_publisher(TWIST, "/cmd_vel", 10)

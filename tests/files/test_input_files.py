@@ -20,11 +20,11 @@ from linkwright.launch.frontend.python_file import read_launch_file
 from linkwright.rviz.config.file import read as read_configuration
 from linkwright.xmltree.reader import read_bytes
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no named pipes")
 
 XACRO = '<robot xmlns:xacro="http://ros.org/wiki/xacro" name="r"><link name="${1 + 1}"/></robot>'
 LONG = bytes(range(256)) * 2000
-"""More than a pipe holds."""
+"""More bytes than a pipe can hold."""
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def test_read_file_stops_at_maximum_size(tmp_path: Path, at_most: int) -> None:
     assert read_file(tmp_path / "short", at_most) == LONG[: min(at_most, 10)]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has such files")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has these files")
 def test_file_with_declared_size_zero_is_read_to_end() -> None:
     assert read_file("/proc/self/stat", 100_000).endswith(b"\n")
     assert len(read_file("/proc/self/stat", 5)) == 5
@@ -70,7 +70,7 @@ def test_pipe_without_writer_is_rejected(pipe: Path) -> None:
 
 
 def test_pipe_is_read_until_closed_and_can_be_reread(pipe: Path) -> None:
-    # A reader at the other end lets the writer begin; it is gone before the pipe is read.
+    # The writer can open the pipe only with a reader. This reader is closed before the pipe is read.
     first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     inner = os.open(pipe, os.O_WRONLY)
     writer = threading.Thread(target=lambda: (os.write(inner, LONG), os.close(inner)))

@@ -154,14 +154,14 @@ def test_longest_file_name_is_written(tmp_path: Path) -> None:
         assert path.read_bytes() == content
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has /dev/full")
 def test_device_is_written_and_not_replaced() -> None:
     with pytest.raises(OSError, match="No space left"):
         write_whole_file("/dev/full", NEW)
     assert not Path("/dev/full").is_file()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no named pipes")
 def test_pipe_is_written(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)

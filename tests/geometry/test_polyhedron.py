@@ -87,7 +87,7 @@ def test_hull_is_closed_convex_and_contains_all_points(cloud):
     normals = np.cross(b - a, c - a)
     areas = np.linalg.norm(normals, axis=1)
     for normal, area, corner in zip(normals, areas, a, strict=True):
-        if area > 1e-6 * size * size:  # a sliver's direction is rounding
+        if area > 1e-6 * size * size:  # rounding determines the normal of a sliver
             assert ((points - corner) @ (normal / area)).max() <= 1e-6 * size
     assert polyhedron_properties(points, faces).mass >= 0
 

@@ -27,7 +27,7 @@ vectors = arrays(np.float64, 3, elements=st.floats(-10, 10))
 X, Y, Z = np.eye(3)
 
 
-def about(axis, angle):
+def rotation_about(axis, angle):
     """Return a rotation matrix, by the textbook formula."""
     c, s = np.cos(angle), np.sin(angle)
     return {
@@ -40,7 +40,7 @@ def about(axis, angle):
 @given(triples)
 def test_rpy_rotates_about_fixed_axes_x_y_z(rpy):
     roll, pitch, yaw = rpy
-    expected = about("z", yaw) @ about("y", pitch) @ about("x", roll)
+    expected = rotation_about("z", yaw) @ rotation_about("y", pitch) @ rotation_about("x", roll)
     np.testing.assert_allclose(rotation_matrix(quaternion_from_rpy(rpy)), expected, atol=1e-12)
 
 

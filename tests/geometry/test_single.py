@@ -32,7 +32,7 @@ def test_rpy_round_trip_keeps_rotation(roll, pitch, yaw):
     quaternion = quaternion_from_rpy((roll, pitch, yaw))
     round_trip = quaternion_from_rpy(rpy_from_quaternion(quaternion))
     cosine = abs(sum(a * b for a, b in zip(quaternion, round_trip, strict=True)))
-    # Near pitch = +-90 degrees urdfdom sets the roll to zero, which is off by up to 0.26 degrees.
+    # Near a pitch of +-90 degrees, urdfdom sets the roll to zero, which causes an error of up to 0.26 degrees.
     assert cosine > 1 - 1e-5
 
 
@@ -62,7 +62,7 @@ def test_quaternion_of_pose_overrides_rpy():
 def test_axis_and_angle_describe_rotation(roll, pitch, yaw):
     quaternion = quaternion_from_rpy((roll, pitch, yaw))
     axis, angle = axis_and_angle(quaternion)
-    assume(length(quaternion[:3]) > 1.1e-6)  # below a millionth, half the angle, the axis is said to be x
+    assume(length(quaternion[:3]) > 1.1e-6)  # below 1e-6, which is half the angle, the axis is x by definition
     assert rotate(quaternion, axis) == pytest.approx(axis, abs=1e-6)
     assert length(axis) == pytest.approx(1)
     half = (*scaled(axis, sin(angle / 2)), cos(angle / 2))
@@ -99,6 +99,6 @@ def test_slerp_interpolates_along_shorter_arc(first, last, ratio):
     begin, end = quaternion_from_rpy((0, 0, first)), quaternion_from_rpy((0, 0, last))
     (between,) = arrays.slerp(begin, end, [ratio])
     difference = (last - first + pi) % (2 * pi) - pi
-    if abs(abs(difference) - pi) > 1e-3:  # half a turn has no shorter way
+    if abs(abs(difference) - pi) > 1e-3:  # the arcs of half a turn have equal lengths
         expected = quaternion_from_rpy((0, 0, first + ratio * difference))
         assert abs(between @ expected) == pytest.approx(1, abs=1e-6)

@@ -21,11 +21,11 @@ async def test_five_hundred_nodes_exchange_messages():
     for number in range(NODES):
         node = graph.create_node(f"node_{number}", namespace=f"robot_{number % 10}")
 
-        def hear(_message, number=number):
+        def on_message(_message, number=number):
             counts[number] += 1
 
-        node.create_subscription(String, "/all", hear, 10)
-        node.create_subscription(String, "ours", hear, 10)
+        node.create_subscription(String, "/all", on_message, 10)
+        node.create_subscription(String, "ours", on_message, 10)
         publisher = node.create_publisher(String, "ours", 10)
         node.create_timer(1.0, lambda publisher=publisher: publisher.publish(String()))
     everybody = graph.create_node("everybody").create_publisher(String, "/all", 10)
@@ -34,7 +34,7 @@ async def test_five_hundred_nodes_exchange_messages():
     await graph.settle()
     assert counts == [1] * NODES
     await clock.advance(1.0)
-    # Ten topics of fifty nodes; queues of ten keep the first of what their own fifty publish until they are read.
+    # There are ten topics with fifty nodes each, and a queue of ten messages for each subscription.
     assert min(counts) > 10
     before = len(graph.endpoints())
     graph.nodes()[0].destroy()
@@ -101,17 +101,17 @@ def test_graph_can_change_while_other_threads_use_it():
 
 
 async def test_thread_loses_no_reliable_messages_to_event_loop():
-    """A hundred thousand messages into a queue that holds all of them."""
+    """The queue can hold all of the hundred thousand messages."""
     graph = Graph(on_log=print)
     node = graph.create_node("node")
     numbers, all_received = [], asyncio.Event()
 
-    def hear(message):
+    def on_message(message):
         numbers.append(int(message.data))
         if len(numbers) == 100_000:
             all_received.set()
 
-    node.create_subscription(String, "topic", hear, 100_000)
+    node.create_subscription(String, "topic", on_message, 100_000)
     publisher = node.create_publisher(String, "topic", 10)
 
     def talk():

@@ -54,4 +54,4 @@ async def test_broken_old_file_is_waited_for_until_fixed(tmp_path):
     (tmp_path / "broken.urdf").write_text(GOOD, encoding="utf-8")
     await eventually(lambda: "repaired broken.urdf" in err.getvalue(), what=err.getvalue)
     view.interrupt("the test is over")
-    assert await running, "nothing is wrong any more"
+    assert await running, "the repaired file has no errors"

@@ -49,7 +49,7 @@ MBOT = """<robot name="mbot">
   </joint>
 </robot>
 """
-"""The measures of the tutorial's first robot: visuals, and nothing that a simulator asks for."""
+"""The dimensions of the tutorial's first robot: only visuals, without the elements that a simulator needs."""
 
 SECOND = 1_000_000_000
 SHARED = Path(__file__).parents[3] / "shared" / "tutorial" / "my_robot_description" / "urdf" / "mbot_base.urdf"
@@ -148,7 +148,7 @@ async def test_drive_ends_after_simulated_seconds(tmp_path, monkeypatch):
     model = SimulatedView(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
     odometry = Recording(model.host.graph, model.host.graph.create_node("listener"), "/odom")
     assert await model.run(None)
-    assert odometry.last.child_frame_id == "base_link", "what was inferred is what is simulated"
+    assert odometry.last.child_frame_id == "base_link", "the simulator uses the inferred drive"
     assert "[gzserver-2]: has finished cleanly" in err.getvalue()
 
 

@@ -97,10 +97,10 @@ async def test_full_disk_ends_recording_but_not_simulation(
     clock = Recording(view.host.graph, view.host.graph.create_node("listener"), "/clock")
     with BagWriter(tmp_path / "run") as writer, monkeypatch.context() as patched:
         patched.setattr(BagWriter, refusing, refuse)
-        assert not await view.run(None, writer), "which is exit status 1"
+        assert not await view.run(None, writer), "the result means exit status 1"
     assert err.getvalue().count("the disk is full") == 1
     assert "has finished cleanly" in err.getvalue()
-    assert clock.last.clock.sec >= 1, "it did not end with the first message"
+    assert clock.last.clock.sec >= 1, "the simulation did not end with the first message"
 
 
 @pytest.mark.parametrize("words", [("sim", "empty"), ("drive", str(MBOT))], ids=["sim", "drive"])

@@ -15,14 +15,14 @@ from tests.waiting import SECONDS
 
 
 class Dropping:
-    """An object whose destructor raises a signal."""
+    """An object whose destructor sends a signal to this process."""
 
     def __init__(self, number: int) -> None:
         self._number = number
 
     def __del__(self) -> None:
         os.kill(os.getpid(), self._number)
-        for _ in range(1000):  # Python handles it here
+        for _ in range(1000):  # Python handles the signal here
             pass
 
 
@@ -30,7 +30,8 @@ class Dropping:
 def test_signal_during_destructor_is_not_lost(
     number: int, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(signals, "_DEADLINE_SECONDS", SECONDS)  # beyond it, the watch ends the process: that of pytest
+    # After the deadline, the watch would end the process of pytest.
+    monkeypatch.setattr(signals, "_DEADLINE_SECONDS", SECONDS)
     hook = sys.unraisablehook
     watch = SignalWatch()
 

@@ -66,7 +66,7 @@ async def test_viewer_uses_world_frame_and_simulated_time():
     listener = view.host.graph.create_node("listener")
     client = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
     answer = await client.call_async(client.srv_type.Request(names=["use_sim_time"]))
-    assert answer.values[0].bool_value, "what it heard before a reset would be newer than all that comes"
+    assert answer.values[0].bool_value, "without simulated time, later messages would seem old after a reset"
     view.interrupt("the test is over")
     assert await running
 

@@ -75,7 +75,7 @@ class RunningSimulation:
         await eventually(lambda: bool(outcomes))
         return outcomes[0]
 
-    async def when(self, condition: Callable[[Simulation], bool]) -> None:
+    async def wait_until(self, condition: Callable[[Simulation], bool]) -> None:
         """Wait until a condition holds in the thread of the simulation."""
         outcomes: list[bool] = []
 
@@ -122,7 +122,7 @@ def with_robot(folder: Path, text: str) -> SimulatedWorld:
     )
 
 
-def has(*names: str) -> Callable[[Simulation], bool]:
+def has_models(*names: str) -> Callable[[Simulation], bool]:
     """Return whether a simulation has these models."""
     return lambda simulation: set(simulation.scene.models) == set(names)
 
@@ -132,7 +132,7 @@ async def test_saved_world_is_reloaded_and_unchanged_models_keep_pose(tmp_path):
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
         (tmp_path / "a.world").write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
-        await running.when(has("ground", "falling", "new"))
+        await running.wait_until(has_models("ground", "falling", "new"))
         assert (await running.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
         assert f"reloaded {tmp_path / 'a.world'}" in running.err.getvalue()
 
@@ -145,12 +145,12 @@ async def test_edited_world_is_not_replaced_by_changed_file(tmp_path):
         await running.look(lambda _: running.worlds.load(str(file), edited))
         file.write_text(world(box("other", "5 5 1 0 0 0")))
         await running.until("has changed; the simulation continues with the edited world")
-        assert await running.look(has("ground", "falling", "edited"))
+        assert await running.look(has_models("ground", "falling", "edited"))
         before = running.worlds.loaded
         file.write_text(edited)
         await running.until("", lambda: running.worlds.loaded is not before)
         file.write_text(world(box("other", "5 5 1 0 0 0")))
-        await running.when(has("ground", "other"))
+        await running.wait_until(has_models("ground", "other"))
 
 
 async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
@@ -159,10 +159,10 @@ async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
         (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
         await running.until("error[XML")
         assert [finding.code[:3] for finding in running.view.reload.findings()] == ["XML"]
-        assert await running.look(has("ground", "falling"))
+        assert await running.look(has_models("ground", "falling"))
         (tmp_path / "a.world").write_text(world(box("new", "5 5 1 0 0 0")))
         await running.until("repaired")
-        await running.when(has("ground", "new"))
+        await running.wait_until(has_models("ground", "new"))
         assert running.view.reload.findings() == []
 
 
@@ -182,7 +182,7 @@ async def test_included_model_is_watched(tmp_path):
     (tmp_path / "a.world").write_text(world("<include><uri>model://crate</uri></include>"))
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{box("crate", "1 1 1 0 0 0")}</sdf>')
-        await running.when(has("ground", "crate"))
+        await running.wait_until(has_models("ground", "crate"))
 
 
 async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
@@ -193,7 +193,7 @@ async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
     async with running_simulation(with_robot(tmp_path, ARM.format(""))) as running:
         await running.look(elsewhere)
         (tmp_path / "robot.urdf").write_text(ARM.format(MORE))
-        await running.when(lambda simulation: "arm::more" in simulation.scene.bodies)
+        await running.wait_until(lambda simulation: "arm::more" in simulation.scene.bodies)
         pose = await running.look(lambda simulation: simulation.model_pose("arm"))
         assert pose[:3] == pytest.approx((1.0, 2.0, 3.0))
         assert (await running.look(lambda simulation: simulation.joint_state("arm::turn")))[0] == pytest.approx(0.5)
@@ -207,7 +207,7 @@ async def test_driven_robot_is_completed_again_after_change(tmp_path):
     async with running_simulation(drive_of(tmp_path / "mbot.urdf")) as running:
         mast = '<link name="mast"/><joint name="m" type="fixed"><parent link="base_link"/><child link="mast"/></joint>'
         (tmp_path / "mbot.urdf").write_text(MBOT.replace("</robot>", f"{mast}</robot>"))
-        await running.when(lambda simulation: "mbot::mast" in simulation.scene.bodies)
+        await running.wait_until(lambda simulation: "mbot::mast" in simulation.scene.bodies)
         radius = await running.look(lambda simulation: simulation.wheel_radius("mbot::left_wheel_link"))
         assert radius == pytest.approx(0.06)
 
@@ -231,7 +231,7 @@ async def test_changed_robot_mesh_is_reloaded(tmp_path):
     ) as running:
         assert await running.look(_extent) < 1.5
         (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
-        await running.when(lambda simulation: _extent(simulation) > 2.0)
+        await running.wait_until(lambda simulation: _extent(simulation) > 2.0)
 
 
 async def test_changed_world_mesh_is_reloaded(tmp_path):
@@ -243,7 +243,7 @@ async def test_changed_world_mesh_is_reloaded(tmp_path):
         await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
         assert await running.look(_extent) < 1.5
         (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
-        await running.when(lambda simulation: _extent(simulation) > 2.0)
+        await running.wait_until(lambda simulation: _extent(simulation) > 2.0)
         assert (await running.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
 
 

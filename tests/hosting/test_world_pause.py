@@ -1,4 +1,4 @@
-"""Pausing and resuming of a running world, and never against the user's choice."""
+"""Pausing and resuming of a running world, which respect the user's choice."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def test_bayer_mosaics_decode_to_colors(pattern):
 
 
 def test_yuv_images_decode_to_rgb():
-    # BT.601: black, white, and the red of 8-bit video
+    # Black, white, and red in 8-bit video of BT.601
     gray = [[[0, 0, 0], [255, 255, 255]]]
     for encoding in ("yuv422", "uyvy"):
         assert pixels(image(encoding, 2, 1, bytes([128, 16, 128, 235]))) == gray

@@ -52,7 +52,7 @@ def test_apng_keeps_order_of_frames() -> None:
         b"fdAT",
         b"IEND",
     ]
-    assert struct.unpack(">II", found[1][1]) == (3, 0)  # without end
+    assert struct.unpack(">II", found[1][1]) == (3, 0)  # three frames, repeated endlessly
     controls = [content for kind, content in found if kind == b"fcTL"]
     assert [struct.unpack_from(">HH", content, 20) for content in controls] == [(250, 1000)] * 3
     numbered = [content for kind, content in found if kind in (b"fcTL", b"fdAT")]

@@ -10,7 +10,7 @@ from linkwright.packages import PackageFinder
 BOX = '<geometry><box size="0.2 0.2 0.2"/></geometry>'
 BALL = '<geometry><sphere radius="0.1"/></geometry>'
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"
-"""Without its slanted side."""
+"""A tetrahedron without its slanted side."""
 INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
 
 

@@ -16,7 +16,7 @@ from linkwright.urdf import Mesh
 from linkwright.xmltree import parse
 from tests.places import REPOSITORY
 
-# Writing a COLLADA file with trimesh: pycollada does what numpy 2.5 warns of. The program only reads them.
+# numpy 2.5 warns about pycollada, which trimesh uses to write COLLADA files. The program only reads such files.
 pytestmark = [
     pytest.mark.extra("mesh"),
     pytest.mark.filterwarnings("ignore:Setting the shape on a NumPy array:DeprecationWarning"),
@@ -40,7 +40,7 @@ def write(folder, kind):
 
 @pytest.mark.parametrize("kind", ["stl", "obj", "glb"])
 def test_reading_mesh_releases_memory_of_file(kind, tmp_path):
-    """Measured without the garbage collector, which rarely runs for a few large objects."""
+    """The garbage collector is off, because it rarely runs for a few large objects."""
     path = write(tmp_path, kind)
     read_mesh(path)
     gc.collect()
@@ -189,7 +189,7 @@ def test_mesh_library_rereads_changed_mesh_only(tmp_path):
     first = MeshLibrary(finder, tmp_path).read(path)
     assert MeshLibrary(finder, tmp_path).read(path) is first
     CONE.copy().apply_scale(2).export(path)
-    os.utime(path, ns=(1, 1))  # however coarse the clock of the file system is
+    os.utime(path, ns=(1, 1))  # the times differ also with a coarse clock of the file system
     assert np.allclose(MeshLibrary(finder, tmp_path).read(path).bounds, np.multiply(first.bounds, 2))
 
 

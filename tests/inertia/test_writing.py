@@ -193,7 +193,7 @@ def test_file_changed_since_reading_is_refused(tmp_path):
     robot = load(path)
     path.write_text('<robot name="other"><link name="a"/></robot>')
     assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "its file has changed since it was read"}
-    path.write_text('<robot name="s"><link name="a"/></robot>')  # as long as before
+    path.write_text('<robot name="s"><link name="a"/></robot>')  # the length of the file is unchanged
     assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "its file has changed since it was read"}
     path.unlink()
     assert write_inertials(robot, {"a": CUBE}).refusals == {"a": "it is not written in a file"}

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.extra("sim")
 SECOND = 1_000_000_000
 ROBOTS = {case[0]: case[1] for case in CASES}
 MOTOR = (20.0, 1.5)
-"""Gain in N m s/rad, and greatest torque in N m."""
+"""The gain in N m s/rad, and the maximum torque in N m."""
 
 
 def standing(title: str) -> tuple[Simulation, Drive]:

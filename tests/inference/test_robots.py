@@ -59,7 +59,7 @@ def test_completed_robot_needs_no_inference(robot):
     document, inference = read_and_inferred(robot)
     before = write(document)
     text = write(complete_description(document, inference))
-    assert write(document) == before, "the document that was read stays as it is"
+    assert write(document) == before, "the inference does not change the document"
     completed = examine(text)
     assert not completed.diagnostics
     assert {diagnostic.code for diagnostic in inferred(text).diagnostics} <= {

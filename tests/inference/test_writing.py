@@ -42,7 +42,7 @@ def test_written_file_describes_completed_robot(write, tmp_path, robot):
     written_lines = iter(text.splitlines())
     for line in robot.splitlines():
         if "/>" not in line and "axis" not in line:
-            assert line in written_lines, "lines stay, in their order"
+            assert line in written_lines, "the lines and their order are unchanged"
 
 
 def test_new_elements_have_indentation_and_line_endings_of_file(write):

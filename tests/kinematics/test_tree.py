@@ -43,18 +43,18 @@ def value_of(robot: Robot, joint: str, values: dict[str, float]) -> float:
 
 def assert_frames(found, robot, tree, values):
     expected = np.array([frame_of(robot, link, values) for link in tree.link_names])
-    # Mimic chains multiply up to 1e6 each, so angles and lengths may be huge: compare in the size of the numbers.
+    # Each mimic joint multiplies by up to 1e6, so angles and lengths may be huge: the tolerance is relative to them.
     size = 1 + np.abs(expected).max() + max([abs(value_of(robot, name, values)) for name in robot.joints], default=0)
     np.testing.assert_allclose(found, expected, atol=1e-9 * size)
 
 
-def small(robot: Robot) -> bool:
+def is_small(robot: Robot) -> bool:
     mimics = [joint.mimic for joint in robot.joints.values() if joint.mimic]
     return all(abs(mimic.multiplier) < 100 and abs(mimic.offset) < 100 for mimic in mimics)
 
 
 @settings(max_examples=60)
-@given(robots().filter(small), st.integers(0, 2**31))
+@given(robots().filter(is_small), st.integers(0, 2**31))
 def test_frames_are_product_of_parent_joint_transforms(robot, seed):
     tree = KinematicTree(robot)
     assert set(tree.link_names) == set(robot.links)
@@ -88,7 +88,7 @@ class TestArm:
 
     def test_prismatic_joint_moves_along_rotated_axis(self):
         frames = self.tree.forward([pi / 2, 0.25, 0])
-        # The slide goes along y of a frame that is turned by 90 degrees, so along -x; its axis counts as unit length.
+        # The joint moves along y of a frame that is rotated by 90 degrees, so along -x. Its axis is normalized.
         np.testing.assert_allclose(frames[self.tree.link_index("c")][:3, 3], [-0.25, 1, 1], atol=1e-12)
 
     def test_rotation_about_diagonal_axis_permutes_coordinate_axes(self):

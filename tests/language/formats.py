@@ -65,7 +65,7 @@ class Place:
     Args:
         file: the file, in a package.
         text: the text; the bar is the cursor.
-        folder: the folder of the workspace; by default that of the packages, for a file in a folder of its package.
+        folder: the folder of the workspace; by default the folder of the packages.
     """
 
     def __init__(self, file: Path, text: str, folder: Path | None = None) -> None:

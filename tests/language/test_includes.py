@@ -79,7 +79,7 @@ def test_unknown_package_does_not_match_known_files(folder, index):
 
 
 def test_include_installed_elsewhere_is_matched_by_name(folder, index):
-    text = including("$(find rover)/description/wheel.xacro")  # CMakeLists.txt may install urdf/ there
+    text = including("$(find rover)/description/wheel.xacro")  # CMakeLists.txt may install urdf/ in description/
     main = folder / "rover" / "urdf" / "robot.xacro"
     wheel = folder / "rover" / "urdf" / "wheel.xacro"
     assert index.entries(wheel, {main: text}) == [main]

@@ -157,7 +157,7 @@ def test_link_rename_updates_dependent_packages(make: Make):
     assert '<parent link="${prefix}trunk"/>' in texts["description/urdf/wheel.xacro"]
     assert texts["bringup/config/rover.rviz"] == RVIZ.replace("base", "trunk")
     assert "0 0 0 0 0 0 trunk map" in texts["bringup/launch/static.launch.xml"]
-    assert [mention.file.name for mention in renaming.unchanged] == ["wheel.xacro"]  # the default that no call uses
+    assert [mention.file.name for mention in renaming.unchanged] == ["wheel.xacro"]  # a default that no call uses
 
 
 def test_rename_at_use_in_macro_changes_definition(make: Make):
@@ -194,7 +194,7 @@ def test_file_belongs_to_robot_named_in_same_launch_file(make: Make):
     renaming, texts = files.rename("bringup/config/rover.yaml", "frame_id: camera", "lidar_link")
     assert "frame_id: lidar_link" in texts["bringup/config/rover.yaml"]
     assert "description/urdf/other.urdf" not in texts
-    assert "bringup/config/rover.rviz" not in texts  # the file may be about the other robot
+    assert "bringup/config/rover.rviz" not in texts  # the file may belong to the other robot
     assert "rover.rviz" in {mention.file.name for mention in renaming.unchanged}
 
 

@@ -204,7 +204,7 @@ def test_computed_reference_is_rejected_with_location(package: Package):
     ],
 )
 def test_invalid_and_conflicting_names_are_rejected(package: Package, file, before, new, code):
-    if new == "fixed_name":  # two calls would have one name
+    if new == "fixed_name":  # two calls would create the same name
         main = package.folder / "urdf" / "arm.urdf.xacro"
         main.write_text(MAIN.replace("  <xacro:if", '  <xacro:bar name="lower" length="1"/>\n  <xacro:if'))
         before = '<joint name="${name}'

@@ -38,7 +38,7 @@ class Running:
     """A launch in a separate process; its output is collected in files.
 
     Attributes:
-        identity: a number by which a test knows it again.
+        identity: a number by which a test identifies the launch.
     """
 
     identity = 0
@@ -68,8 +68,8 @@ class Running:
     def until(self, text: str, seconds: float = SECONDS) -> None:
         deadline = time.monotonic() + seconds
         while text not in self.out and text not in self.err:
-            assert self.process.poll() is None, f"it ended:\n{self.out}\n{self.err}"
-            assert time.monotonic() < deadline, f"'{text}' never came:\n{self.out}\n{self.err}"
+            assert self.process.poll() is None, f"the launch ended:\n{self.out}\n{self.err}"
+            assert time.monotonic() < deadline, f"'{text}' was not printed in time:\n{self.out}\n{self.err}"
             time.sleep(0.01)
 
     def end(self, number: int = signal.SIGINT) -> tuple[int, float]:

@@ -45,7 +45,7 @@ class Page:
         self.told: dict[str, dict] = {}
 
     async def follow(self, running: Running, condition: Callable[[], object]) -> None:
-        """Listen until a condition holds."""
+        """Receive messages until a condition holds."""
         async with (
             aiohttp.ClientSession() as session,
             session.ws_connect(running.url.replace("/?", "/ws?"), max_msg_size=0) as socket,
@@ -74,7 +74,7 @@ async def test_views_are_isolated_unless_joined(start: Callable[..., Running], t
         page = Page()
         await page.follow(view, page.frames)
         assert page.frames() == [f"{name}_base", f"{name}_arm"]
-        assert not is_on_network(view), "it would join sooner than the one that joined, which began later"
+        assert not is_on_network(view), "the view had more time to join than the one with --join"
 
 
 async def test_launches_with_shared_node_names_are_reported_once(

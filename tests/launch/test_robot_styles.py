@@ -204,7 +204,7 @@ async def test_yaml_file_includes_xml_file(launch: Any, write: Any, robot: Path)
     path = write("src/bot/launch/system.launch.yaml", dedent(SYSTEM_YAML))
     description = load_launch_file(path)
     result = await launch(description, namespace="ns", current="x")
-    assert "the launch description was not read from a file" in result.err  # $(dirname) outside of a launch file
+    assert "the launch description was not read from a file" in result.err  # $(dirname) needs a launch file
     result = await launch(_file(path), namespace="ns")
     assert result.messages == ["ns yamlbot at 0.75", "nowhere else"], result.err
 

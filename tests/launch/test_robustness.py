@@ -36,7 +36,7 @@ AGAIN_AND_AGAIN = {
     + "def again(context):\n    return [OpaqueFunction(function=again)]\n"
     + "def generate_launch_description():\n    return LaunchDescription([OpaqueFunction(function=again)])\n",
 }
-"""Launch files that lead to themselves; two of them to each other."""
+"""Launch files that include themselves or each other, or repeat an action endlessly."""
 
 
 @pytest.mark.parametrize("name", AGAIN_AND_AGAIN)
@@ -50,7 +50,7 @@ async def test_recursive_includes_and_actions_are_one_error(launch, write: Write
     assert "error[LAUNCH156]" in result.err
     assert f"{path.parent}" in result.err
     assert "asyncio" not in result.err
-    assert result.err.count("included from here") <= 3  # each place once, however often it was passed
+    assert result.err.count("included from here") <= 3  # each location is listed once
 
 
 def test_arguments_of_recursive_include_are_listed(write: Write) -> None:

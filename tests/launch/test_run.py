@@ -102,7 +102,7 @@ class TestSignals:
         running.until("waiting for bad-1 to end; press Ctrl-C again to end them now")
         status, seconds = running.end()
         assert status == 130
-        assert seconds < 10.0, "sooner than without hurry"
+        assert seconds < 10.0, "the processes end without the usual delays"
         assert "escalating to 'SIGTERM'" in running.err
         assert "escalating to 'SIGKILL'" in running.err
 

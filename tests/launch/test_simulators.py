@@ -54,9 +54,9 @@ class Simulators:
     """The servers that a launch started.
 
     Attributes:
-        started: package, parameters and command line of each.
-        environments: the variables of each.
-        spawned: what they were asked to spawn; None to end at once.
+        started: the package, parameters and command line of each server.
+        environments: the environment variables of each server.
+        spawned: the requested entities; None lets servers end at once.
     """
 
     def __init__(self) -> None:
@@ -84,7 +84,7 @@ def simulators(monkeypatch: pytest.MonkeyPatch) -> Simulators:
 
 
 FINDER = PackageFinder(start=Path(__file__).parent, environment={})
-"""Finds no package of Gazebo: what it finds is ours."""
+"""A finder without Gazebo's packages, which finds only Linkwright's substitutes."""
 
 
 def share(package: str) -> Path:
@@ -122,7 +122,7 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     write: Write,
     tmp_path: Path,
 ) -> None:
-    """As beside a clone of ros_gz, whose build generates gz_sim.launch.py; the clone's own files take precedence."""
+    """The build of ros_gz generates gz_sim.launch.py, so a clone lacks it. The clone's own files take precedence."""
     folder = write("ws/src/ros_gz/ros_gz_sim/package.xml", "<package><name>ros_gz_sim</name></package>").parent
     write("ws/src/ros_gz/ros_gz_sim/CMakeLists.txt", COMPILED)
     write("ws/src/ros_gz/ros_gz_sim/launch/gz_sim.launch.py.in", "@GZ_SIM_VER@")
@@ -253,7 +253,7 @@ async def test_gazebo_gui_opens_one_viewer(
     launch: Callable[..., Any], simulators: Simulators, entities: list[LaunchDescriptionEntity], pages: int
 ) -> None:
     """RViz's viewer is reused; otherwise a viewer runs as long as the program that opens the window."""
-    simulators.spawned = []  # the server goes on
+    simulators.spawned = []  # the server does not end
 
     def look(context: LaunchContext) -> None:
         async def seen() -> None:
@@ -337,7 +337,7 @@ async def test_tutorial_launch_files_spawn_robot(
 async def test_shutdown_on_server_exit_is_decided_within_include_scope(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:
-    """At the end of the server the scope of the include is over."""
+    """When the server ends, the scope of the include has already ended."""
     for package, name, argument in (
         ("ros_gz_sim", "gz_sim.launch.py", {"gz_args": str(WORLD)}),
         ("gazebo_ros", "gzserver.launch.py", {"world": str(WORLD)}),

@@ -10,7 +10,7 @@ from linkwright.learning.course import Lesson
 
 
 def finish(lessons: Iterable[Lesson], workspace: Path) -> None:
-    """Copy the files to begin with and the solutions of lessons, as a learner gets them one after another."""
+    """Copy the initial files and the solutions of lessons in the order in which a learner gets them."""
     for lesson in lessons:
         for source in (lesson.start, *(step.solution for step in lesson.steps)):
             if source.is_dir():

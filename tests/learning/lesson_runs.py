@@ -24,4 +24,4 @@ def lessons_of_part(number: int) -> list[Any]:
 def expect_passes(course: Course, lesson: Lesson) -> None:
     """Run the tests of a lesson, and fail with the problems."""
     problems = [f"{result.title}: {result.problem}" for result in run_lesson_tests(course, lesson) if result.problem]
-    assert not problems, "\n".join(problems)  # pytest shows only assertions of the test modules themselves
+    assert not problems, "\n".join(problems)  # pytest explains only assertions in test modules

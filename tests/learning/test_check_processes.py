@@ -64,7 +64,7 @@ def run_statement(server, folder, statement, processor, time_limit):
     return str(result.message)
 
 
-ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports the waiting of processes")
+ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports how long a process waits")
 
 
 @ON_LINUX

@@ -1,4 +1,4 @@
-"""A learner's way through a course: files, checks, hints, solutions, and the progress that is kept."""
+"""A learner's progress through a course: files, checks, hints, solutions, and the stored progress."""
 
 import importlib.util
 import json
@@ -63,7 +63,7 @@ def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(workspace, ca
     assert (status, out) == (0, "robot.urdf\n")
     (backup,) = (workspace / "replaced").rglob("robot.urdf")
     assert backup.read_text() == "mine"
-    assert (workspace / "replaced" / "COLCON_IGNORE").is_file()  # a copy of a package is not one more package
+    assert (workspace / "replaced" / "COLCON_IGNORE").is_file()  # colcon must ignore the copy of a package
     text = (workspace / "learn.yaml").read_text()
     assert "hints: 2" in text
     assert "solution: true" in text
@@ -236,7 +236,7 @@ def check_server(request):
         yield None
         return
     if not IS_POSSIBLE:
-        pytest.skip("programs are forked off on Linux only")
+        pytest.skip("programs are forked on Linux only")
     with create_check_server() as server:
         yield server
 
@@ -253,7 +253,7 @@ def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys,
     )
     step = load_course(folder).steps[0]
     checks.write_text(start + "while True: time.sleep(1)\n")
-    check_in_process(step, tmp_path, time_limit=3.0, server=check_server)  # which may take long to begin
+    check_in_process(step, tmp_path, time_limit=3.0, server=check_server)  # the server may take long to start
     result = check_in_process(step, tmp_path, time_limit=3.0, server=check_server)
     assert "took longer than 3 s" in str(result.checks[0].message)
     if sys.platform != "win32":

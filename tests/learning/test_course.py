@@ -1,4 +1,4 @@
-"""Courses are read with all their texts, and each mistake in their files is one error with its place."""
+"""Courses are read with all their texts, and each mistake in their files is one error with its location."""
 
 from pathlib import Path
 

@@ -215,7 +215,7 @@ def test_judge_command_prints_table_or_json(tmp_path, monkeypatch, capsys):
     assert (tmp_path / f"{FAST}.py").read_text(encoding="utf-8") == find_exercise(FAST).template.read_text(
         encoding="utf-8"
     )
-    assert main(["learn", "judge", FAST, "--start"]) != 0, "a file of the user is not overwritten"
+    assert main(["learn", "judge", FAST, "--start"]) != 0, "the user's file is not overwritten"
     capsys.readouterr()
     (tmp_path / "done.py").write_text("import sys\nprint('hello')\nsys.exit(0)\n", encoding="utf-8")
     assert main(["learn", "judge", FAST, "done.py", "--seeds", "1", "--json"]) == 1

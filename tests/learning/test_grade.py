@@ -24,7 +24,7 @@ from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox is for Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox needs Linux")
 
 ENDLESS = "while True: pass"
 FORK_BOMB = "import os, time\nwhile True:\n    try:\n        os.fork()\n    except OSError:\n        time.sleep(0.01)"
@@ -65,7 +65,8 @@ def folder(class_folder, monkeypatch):  # noqa: F811
     students = class_folder / "students"
     students.mkdir()
     monkeypatch.chdir(class_folder)
-    monkeypatch.setattr(running, "PYTHON", [sys.executable])  # the settings of coverage are not readable in the sandbox
+    # Without coverage, whose settings are not readable in the sandbox.
+    monkeypatch.setattr(running, "PYTHON", [sys.executable])
     return class_folder
 
 
@@ -129,7 +130,7 @@ def test_grade_report_has_points_claims_and_all_formats(folder):
     page = Path("out.html").read_text(encoding="utf-8")
     assert "=odd, name" in page
     assert 'lang="zh"' in page
-    assert '</summary><div id="student-0">' in page  # a link to a place in `details` opens it
+    assert '</summary><div id="student-0">' in page  # a link to an element in `details` opens it
     assert '<span lang="en">2 hints</span>' in page
     assert not list(folder.glob("*.unfinished"))
 
@@ -314,10 +315,8 @@ def test_malicious_students_on_cluster_affect_only_themselves(folder):
         write_student(folder, f"malicious{number}", attack)
     folders = sorted(map(str, (folder / "students").iterdir()))
     words = ["learn", "grade", "--course", "course", "--ray", "local", "--json", "out.json", *LIMITS, *folders]
-    environment = {
-        **os.environ,
-        "RAY_raylet_start_wait_time_s": "240",
-    }  # less than the limit of a test: a raylet that died is an error, not a silence
+    # Less than the time limit of a test, so that Ray reports a raylet that died.
+    environment = {**os.environ, "RAY_raylet_start_wait_time_s": "240"}
     result = subprocess.run(
         [sys.executable, "-m", "linkwright", *words], env=environment, capture_output=True, text=True, check=False
     )

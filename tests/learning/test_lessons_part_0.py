@@ -5,7 +5,7 @@ import pytest
 from tests.learning.lesson_runs import expect_passes, lessons_of_part
 
 
-@pytest.mark.timeout(3000)  # some have fifty cases, each a process
+@pytest.mark.timeout(3000)  # some lessons have fifty cases, each in a process
 @pytest.mark.parametrize(("course", "lesson"), lessons_of_part(0))
 def test_lesson_passes_its_tests(course, lesson):
     expect_passes(course, lesson)

@@ -1,15 +1,15 @@
-"""Tests of rules from Markdown pages: a document, and the expected findings.
+"""Tests of rules on Markdown pages: files, and the expected findings.
 
-A page begins with a comment that says whose findings it shows, ``<!-- rules: LW2 -->`` (all rules of those codes run,
-pedantic ones too). A case is:
+A page begins with a comment that selects rules, ``<!-- rules: LW2 -->``: all rules whose codes begin with LW2 run, also
+pedantic ones. A case has:
 
 - a ``##`` heading;
-- code blocks with the files: ```` ```xml ```` is ``robot.urdf``, ```` ```xml file=name ```` any other file in any
-  language; the first block is the file that is checked; ```` ```toml ```` is ``linkwright.toml``;
-- a ```` ```text ```` block with the findings by place, ``LINE:COLUMN CODE message`` (``FILE:LINE:COLUMN`` in files
-  other than the first, ``-`` without a place), then indented ``note: ...`` (with its place in parentheses) and
-  ``hint: ...``; an empty block says that nothing is found;
-- perhaps a ```` ```xml fixed ```` block: the checked file after all its fixes, unsafe ones too.
+- code blocks with the files: ```` ```xml ```` is ``robot.urdf``, ```` ```xml file=name ```` is another file in any
+  language, and ```` ```toml ```` is ``linkwright.toml``; the first block is the file that is checked;
+- a ```` ```text ```` block with the findings by location, ``LINE:COLUMN CODE message`` (``FILE:LINE:COLUMN`` in files
+  other than the first, ``-`` without a location), then indented ``note: ...`` (with its location in parentheses) and
+  ``hint: ...``; the block is empty if there are no findings;
+- optionally a ```` ```xml fixed ```` block: the checked file after all fixes, including unsafe ones.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Case:
     title: str
     selectors: tuple[str, ...]
     files: dict[str, str]
-    said: str
+    expected: str
     fixed: str | None
 
     @property
@@ -76,7 +76,7 @@ def load_cases() -> list[Case]:
 def _cases(page: Path) -> list[Case]:
     text = page.read_text(encoding="utf-8")
     rules = _RULES.search(text)
-    assert rules, f"{page.name} does not say whose findings it shows"
+    assert rules, f"{page.name} does not select rules"
     selectors = tuple(rules[1].split())
     return [_case(page.stem, title, selectors, blocks) for title, blocks in read_sections(page)]
 

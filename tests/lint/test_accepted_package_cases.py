@@ -104,7 +104,7 @@ def test_repeated_dependency_is_an_info_or_error_beside_depend(tmp_path, lines, 
 
 @pytest.mark.parametrize("name", ["iCub", "neo-mpo"])
 def test_package_name_that_colcon_accepts_is_an_info(tmp_path, name):
-    """Whoever published a package cannot rename it."""
+    """The author of a published package cannot rename it."""
     (tmp_path / "package.xml").write_text(MANIFEST.format(more="").replace("<name>p</name>", f"<name>{name}</name>"))
     findings = examine_package(tmp_path, Settings(select=("LW805",))).diagnostics
     assert [finding.severity.value for finding in findings] == ["info"]

@@ -1,4 +1,4 @@
-"""No rule, comment or setting makes the check fail, whatever a description contains."""
+"""No rule, comment or setting makes the check of any description raise an exception."""
 
 from __future__ import annotations
 
@@ -111,5 +111,5 @@ def test_lint_effort_is_linear_in_robot_size(tmp_path, mimic, loose):
         path.write_text(chain(count, mimic, loose), encoding="utf-8")
         return lines_run(lambda: examine(path, settings=settings))
 
-    work(5)  # what is read once
+    work(5)  # fills caches
     assert work(400) < 5 * work(100)

@@ -386,7 +386,7 @@ def test_rules_run_once_for_sets_with_same_robot(check, monkeypatch, velocity, o
 
 
 def test_property_named_by_argument_value_of_one_set_is_used(check):
-    """Used properties can depend on argument values, although the files are the same."""
+    """The used properties depend on the values of arguments, even if the files are the same."""
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in ("size", "width", "other"))
     files = given_kinds(f'{properties}<link name="l${{$(arg kind)}}"/>', "size", "width")
     findings = check(files, ".", "--select", "LW701")

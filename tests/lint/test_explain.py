@@ -35,7 +35,7 @@ def test_every_page_belongs_to_reported_code():
 
 
 def test_every_file_of_pages_begins_with_title():
-    """Else its first code is missing from the list in the documentation."""
+    """Without a title, the documentation does not list the first code of the file."""
     for file in (ROOMS / "lint" / "pages").glob("*.md"):
         assert file.read_text(encoding="utf-8").startswith("# "), file.name
 

@@ -43,16 +43,16 @@ def installed(tmp_path, monkeypatch):
         (facts / "METADATA").write_text("Metadata-Version: 2.1\nName: team-rules\nVersion: 1.0\n")
         (facts / "entry_points.txt").write_text("[linkwright.lint_rules]\nteam = team_rules\n")
         monkeypatch.syspath_prepend(tmp_path)
-        forget()
+        remove_module()
 
-    def forget() -> None:
+    def remove_module() -> None:
         sys.modules.pop("team_rules", None)
         for cached in (extensions._all_groups, registry._all_rules, registry._index):
             cached.cache_clear()
 
     yield install
     monkeypatch.undo()
-    forget()
+    remove_module()
 
 
 @pytest.fixture

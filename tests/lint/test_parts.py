@@ -34,7 +34,7 @@ def test_urdf_errors_are_reported_beside_xacro_error(codes):
 
 
 def test_consequences_of_missing_part_are_not_reported(codes):
-    # Several links without a parent, a joint of links that are not there, a property and macro that nothing uses.
+    # Without the missing part, there are two root links, a joint of missing links, and an unused property and macro.
     unused = '<xacro:property name="p" value="1"/><xacro:macro name="m"/>'
     assert codes(f'{unused}<link name="a"/><link name="b"/>{joint("c", FINE)}<xacro:whel/>') == ["XAC401"]
 

@@ -10,7 +10,7 @@ from tests.lint.cases import Case, load_cases
 
 CASES = load_cases()
 _EXTRA = re.compile("the extra `([a-z]+)`")
-"""In the title of a case: what it needs."""
+"""The part of a case's title that names a required extra."""
 
 
 def _marks(case: Case) -> list[pytest.MarkDecorator]:
@@ -20,9 +20,9 @@ def _marks(case: Case) -> list[pytest.MarkDecorator]:
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.name, marks=_marks(case)) for case in CASES])
 def test_case_has_expected_findings(case: Case, tmp_path, monkeypatch):
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    folder = tmp_path / "case"  # packages of other tests lie beside tmp_path, and those beside a package are found
+    folder = tmp_path / "case"  # not tmp_path, because the packages of other tests beside it would be found
     folder.mkdir()
     monkeypatch.chdir(folder)
-    assert case.run(folder) == case.said
+    assert case.run(folder) == case.expected
     if case.fixed is not None:
         assert case.fixed_text(folder) == case.fixed

@@ -25,11 +25,11 @@ FOUND = {
     "husarion_components_description/urdf/wibotic_station.urdf.xacro": {"LW325"},
     # One link's identified tensor breaks the triangle inequality by 9 %.
     "franka_description/robots/fer/fer.urdf.xacro": {"LW314"},
-    # Ours: a head without mass, textures that are not there.
+    # Our robot: a head without mass, and missing textures.
     "humanoid_description/urdf/humanoid.urdf.xacro": {"LW301"},
     "cell_description/urdf/cell.urdf.xacro": {"LW503"},
     "plain_description/urdf/shapes.urdf": {"LW503"},
-    # "default_inertial" for every link: one cause.
+    # Every link uses "default_inertial", so the findings have one cause.
     "urdf_tutorial@ros2/urdf/08-macroed.urdf.xacro": {"LW315"},
 }
 """Expected warnings about robots besides missing meshes: each is a mistake of the description."""

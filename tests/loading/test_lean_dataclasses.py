@@ -73,7 +73,7 @@ def answers(library: Any, options: dict[str, int]) -> list[object]:
         results += [outcome(lambda instance=instance: hash(instance) == hash(copy.copy(instance)))]
         mine = copy.copy(instance)
         if isinstance(instance, (class_by_name["Derived"], nothing)):
-            continue  # `dataclasses` fails there with a TypeError about super()
+            continue  # `dataclasses` raises a TypeError about super() here
         results += [
             outcome(lambda mine=mine: setattr(mine, mine.__match_args__[0], 5)),
             outcome(lambda mine=mine: delattr(mine, mine.__match_args__[0])),
@@ -133,7 +133,7 @@ def test_dataclass_can_derive_from_lean_dataclass():
 
 
 class Leaned(lean_dataclasses.NamedTuple):
-    """A named tuple of either module."""
+    """A named tuple of `linkwright.loading.lean_dataclasses`."""
 
     x: int
     others: tuple[int, ...] = ()
@@ -144,7 +144,7 @@ class Leaned(lean_dataclasses.NamedTuple):
 
 
 class Usual(NamedTuple):
-    """A named tuple of either module."""
+    """The same named tuple of `typing`."""
 
     x: int
     others: tuple[int, ...] = ()

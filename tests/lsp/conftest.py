@@ -135,7 +135,7 @@ async def connected(
 ) -> AsyncIterator[Editor]:
     """Start the language server for an editor with some capabilities that has opened a package.
 
-    Capabilities that the server registers go into the queue. The options are those of the command.
+    Capabilities that the server registers go into the queue. The options are options of the command.
     """
     client = LanguageClient("test", "1")
     editor = Editor(client, package)

@@ -10,7 +10,7 @@ from pygls.exceptions import JsonRpcException
 
 from linkwright.lsp.requests.expansions import description_of, expansion_uri
 from tests.lsp.conftest import MAIN, MANIFEST, PARTS
-from tests.lsp.test_hints import FILE, PARTS_FILE, at
+from tests.lsp.test_hints import FILE, PARTS_FILE, position_after
 
 
 async def content(editor, uri: str) -> str:
@@ -28,14 +28,14 @@ def test_expansion_uri_contains_description_and_arguments(tmp_path: Path):
 
 async def test_editor_without_virtual_documents_gets_no_expansion(editor):
     editor.open(FILE)
-    parameters = types.ImplementationParams(editor.document(FILE), at(MAIN, '<link name="base"'))
+    parameters = types.ImplementationParams(editor.document(FILE), position_after(MAIN, '<link name="base"'))
     assert not await editor.client.text_document_implementation_async(parameters)
 
 
 async def test_manifest_has_no_expansion(editor_with_pages):
     editor = editor_with_pages
     editor.open("package.xml")
-    parameters = types.ImplementationParams(editor.document("package.xml"), at(MANIFEST, "<export>"))
+    parameters = types.ImplementationParams(editor.document("package.xml"), position_after(MANIFEST, "<export>"))
     assert not await editor.client.text_document_implementation_async(parameters)
 
 
@@ -44,7 +44,7 @@ async def test_implementation_request_links_element_and_expansions(editor_with_p
     text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="0.3"/>\n</robot>')
     editor.open(FILE, text)
     editor.open(PARTS_FILE)
-    place = at(PARTS, "<axis")
+    place = position_after(PARTS, "<axis")
     implementations = await editor.client.text_document_implementation_async(
         types.ImplementationParams(editor.document(PARTS_FILE), place)
     )

@@ -96,6 +96,6 @@ async def test_burst_of_edits_of_large_file_leaves_no_processes(editor):
     await editor.until(MAIN_FILE, "XAC401")
     for number in range(10):
         editor.change(MAIN_FILE, f"{text}<!-- {number} -->")
-        await asyncio.sleep(0.05 * number)  # some of them while a process starts or works
+        await asyncio.sleep(0.05 * number)  # some changes arrive while a process starts or works
     await editor.until(MAIN_FILE)
     await eventually(lambda: all("spawn_main" not in " ".join(child.cmdline()) for child in server.children()))

@@ -15,7 +15,7 @@ FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 ALL = types.Range(types.Position(0, 0), types.Position(1000, 0))
 
 
-def at(text: str, place: str) -> types.Position:
+def position_after(text: str, place: str) -> types.Position:
     """Return the position behind a part of a text."""
     before = text[: text.index(place) + len(place)]
     return types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
@@ -62,8 +62,8 @@ async def test_hover_lists_value_for_each_macro_call(editor):
         hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), place))
         return hover.contents.value
 
-    assert "`${2 * 0.1}` = `0.2`" in await hover(FILE, at(text, "${2 "))
-    values = await hover(PARTS_FILE, at(PARTS, "${na"))
+    assert "`${2 * 0.1}` = `0.2`" in await hover(FILE, position_after(text, "${2 "))
+    values = await hover(PARTS_FILE, position_after(PARTS, "${na"))
     assert '- `\'upper\'` `bar name="upper" length="0.4"` (arm.urdf.xacro:4)' in values
     assert "- `'lower'` `bar name=\"lower\"" in values
 
@@ -72,7 +72,7 @@ async def test_code_lens_counts_macro_uses(editor):
     editor.open(PARTS_FILE)
     lens, page = await editor.client.text_document_code_lens_async(types.CodeLensParams(editor.document(PARTS_FILE)))
     assert page.command.command == "linkwright.showRobot"
-    assert lens.range.start == at(PARTS, 'xacro:macro name="')
+    assert lens.range.start == position_after(PARTS, 'xacro:macro name="')
     resolved = await editor.client.code_lens_resolve_async(lens)
     assert (resolved.command.title, resolved.command.command) == ("1 use", "")
 
@@ -133,7 +133,7 @@ async def test_includes_and_meshes_are_links_and_definitions(editor, package):
     links = await editor.client.text_document_document_link_async(types.DocumentLinkParams(editor.document(FILE)))
     assert [link.target for link in links] == [editor.uri(PARTS_FILE), (package / "meshes" / "a.stl").as_uri()]
     (place,) = await editor.client.text_document_definition_async(
-        types.DefinitionParams(editor.document(FILE), at(text, "parts.x"))
+        types.DefinitionParams(editor.document(FILE), position_after(text, "parts.x"))
     )
     assert place.uri == editor.uri(PARTS_FILE)
 
@@ -153,7 +153,7 @@ async def test_workspace_symbols_match_subset_of_letters(editor):
 async def test_uses_of_name_are_highlighted(editor):
     editor.open(PARTS_FILE)
     highlights = await editor.client.text_document_document_highlight_async(
-        types.DocumentHighlightParams(editor.document(PARTS_FILE), at(PARTS, "${na"))
+        types.DocumentHighlightParams(editor.document(PARTS_FILE), position_after(PARTS, "${na"))
     )
     assert [(use.range.start.line, use.kind) for use in highlights] == [
         (1, types.DocumentHighlightKind.Write),
@@ -169,7 +169,7 @@ async def test_macro_calls_have_hierarchy(editor):
     editor.open(PARTS_FILE, text)
     document = editor.document(PARTS_FILE)
     (bar,) = await editor.client.text_document_prepare_call_hierarchy_async(
-        types.CallHierarchyPrepareParams(document, at(text, 'name="ba'))
+        types.CallHierarchyPrepareParams(document, position_after(text, 'name="ba'))
     )
     incoming = await editor.client.call_hierarchy_incoming_calls_async(types.CallHierarchyIncomingCallsParams(bar))
     assert sorted(call.from_.name for call in incoming) == ["arm.urdf.xacro", "pair"]

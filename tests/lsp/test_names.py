@@ -157,7 +157,7 @@ async def test_hover_of_material_shows_color(editor):
 
 
 async def test_completion_items_have_filter_text(editor):
-    """Neovim offers an item with an edit and without a filter text whatever is typed."""
+    """Neovim offers an item that has an edit and no filter text for any typed text."""
     editor.open(FILE, MAIN.replace("<link", "<li"))
     parameters = types.CompletionParams(editor.document(FILE), types.Position(2, 5))
     completions = await editor.client.text_document_completion_async(parameters)

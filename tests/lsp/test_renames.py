@@ -13,7 +13,7 @@ from tests.lsp.conftest import MAIN
 FILE = "urdf/arm.urdf.xacro"
 
 
-def at(text: str) -> types.Position:
+def position_in(text: str) -> types.Position:
     """Return the position in the middle of a text in the main file."""
     offset = MAIN.index(text) + len(text)
     return types.Position(MAIN.count("\n", 0, offset), offset - MAIN.rfind("\n", 0, offset) - 1)
@@ -21,14 +21,16 @@ def at(text: str) -> types.Position:
 
 async def test_references_are_found_in_all_files(editor):
     editor.open(FILE)
-    parameters = types.ReferenceParams(types.ReferenceContext(True), editor.document(FILE), at('<link name="b'))
+    parameters = types.ReferenceParams(
+        types.ReferenceContext(True), editor.document(FILE), position_in('<link name="b')
+    )
     references = await editor.client.text_document_references_async(parameters)
     assert sorted(place.uri.rpartition("/")[2] for place in references) == ["arm.urdf.xacro", "parts.xacro"]
 
 
 async def test_rename_edits_open_files_with_versions(editor):
     editor.open(FILE)
-    document, position = editor.document(FILE), at('<link name="b')
+    document, position = editor.document(FILE), position_in('<link name="b')
     prepared = await editor.client.text_document_prepare_rename_async(types.PrepareRenameParams(document, position))
     assert prepared.placeholder == "base"
     edit = await editor.client.text_document_rename_async(types.RenameParams(document, position, "trunk"))
@@ -43,13 +45,13 @@ async def test_rename_to_existing_link_is_rejected_with_reason(editor):
     editor.open(FILE)
     with pytest.raises(JsonRpcException, match="two links would have the same name"):
         await editor.client.text_document_rename_async(
-            types.RenameParams(editor.document(FILE), at('<link name="b'), "upper")
+            types.RenameParams(editor.document(FILE), position_in('<link name="b'), "upper")
         )
 
 
 async def test_rename_during_change_is_rejected_or_uses_old_version(editor):
     editor.open(FILE)
-    parameters = types.RenameParams(editor.document(FILE), at('<link name="b'), "trunk")
+    parameters = types.RenameParams(editor.document(FILE), position_in('<link name="b'), "trunk")
     renaming = asyncio.ensure_future(editor.client.text_document_rename_async(parameters))
     await asyncio.sleep(0)  # the request is sent before the change
     editor.change(FILE, "<!-- typed meanwhile -->\n" + MAIN)

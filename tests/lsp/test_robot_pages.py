@@ -65,7 +65,7 @@ async def test_page_follows_editor_and_opens_source_lines(showing_editor):
     editor.open(FILE)
     url = await address(editor, PARTS_FILE, opens=True)
     assert (await shown.get()).uri == url
-    assert await address(editor, FILE) == url, "a file shows the description that includes it"
+    assert await address(editor, FILE) == url, "the page of a file shows the description that includes it"
     async with aiohttp.ClientSession() as session, session.ws_connect(url.replace("/?", "/ws?")) as socket:
         scene = await message(socket, "robot_scene")
         assert [link["name"] for link in scene["links"]] == ["base", "upper"]

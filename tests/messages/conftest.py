@@ -1,4 +1,4 @@
-"""A package of interface files in a workspace of its own."""
+"""A package of interface files in a separate workspace."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Messages of any class with random values, and the same as objects of rosbags: an oracle for the bytes."""
+"""Messages of any class with random values, and equal objects of rosbags, whose bytes must be equal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TEXTS = ("", "a", "base_link", "é漢", "two words", "x" * 300, "multi\nline\n",
 
 
 def random_message(cls: type[Any], seed: int) -> Any:
-    """Return a message of a class; it is the same for the same seed."""
+    """Return a message of a class; equal seeds give equal messages."""
     return _message(cls, random.Random(seed))
 
 
@@ -45,7 +45,7 @@ def _primitive(kind: FieldType, primitive: Primitive, draw: random.Random) -> An
     if primitive.python is bool:
         return draw.random() < 0.5
     if primitive.python is bytes:
-        return bytes([draw.randrange(128)])  # rosbags cannot write more
+        return bytes([draw.randrange(128)])  # rosbags cannot write larger values
     if primitive.python is int:
         return draw.choice((primitive.low, primitive.high, draw.randint(int(primitive.low), int(primitive.high))))
     return float(np.float32(draw.uniform(-1e3, 1e3)))

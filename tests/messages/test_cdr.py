@@ -1,4 +1,4 @@
-"""Messages as bytes: as rosbags writes them, whatever is in them, and never a crash for bytes that are none."""
+"""Messages as bytes: rosbags writes the same bytes, and invalid bytes raise an error instead of a crash."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_corrupted_bytes_are_rejected_or_deserialized(name, seed, data):
         message = deserialize(bytes(raw), cls)
     except MessageDataError:
         return
-    # What was read is a message like any other.
+    # A message that was read can be written and read again.
     assert type(deserialize(serialize(message), cls)) is cls
 
 
@@ -153,7 +153,7 @@ class TestRejectedBytes:
 
 
 def test_string_of_length_zero_is_empty():
-    # Some writers leave the NUL of an empty text away.
+    # Some writers omit the NUL of an empty string.
     assert deserialize(b"\0\1\0\0\0\0\0\0", String) == String()
 
 

@@ -1,4 +1,4 @@
-"""The classes of messages behave as rosidl_generator_py's (Humble), with its texts when something is refused."""
+"""The classes of messages behave as those of rosidl_generator_py (Humble), and raise errors with the same texts."""
 
 from __future__ import annotations
 
@@ -313,7 +313,7 @@ def test_action_class_has_goal_result_and_feedback():
     ],
 )
 def test_unknown_or_malformed_interface_name_is_rejected(getter, name, message, hint):
-    get_service("std_srvs/srv/SetBool")  # what is known already is no other kind either
+    get_service("std_srvs/srv/SetBool")  # a known interface is not found as another kind
     with pytest.raises(InterfaceNotFoundError) as caught:
         getter(name)
     (diagnostic,) = caught.value.diagnostics

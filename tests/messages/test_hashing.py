@@ -65,7 +65,7 @@ def test_type_hash_accepts_classes():
 
 
 def test_hash_of_iron_discovery_message_matches(monkeypatch):
-    # Its gid is shorter than Humble's. The package's name counts, so its hash is taken with that one's.
+    # Iron's Gid is shorter than Humble's. The hash includes the name of the package, so it replaces Humble's.
     from linkwright.diagnostics import SourceText
     from linkwright.messages.definitions import hashing
     from linkwright.messages.definitions.parser import parse_interface

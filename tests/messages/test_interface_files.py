@@ -28,7 +28,7 @@ from linkwright.packages.interface_files import interface_file
 
 
 class Everything:
-    """Any message is known."""
+    """A library that knows every message."""
 
     def has_message(self, type_name):
         return True
@@ -395,7 +395,7 @@ class TestEmbeddedDefinitions:
         inner = get_message("carried_msgs/msg/Inner")
         assert outer(inner=[inner()]).inner[0].n == 5
         assert outer.get_fields_and_field_types()["header"] == "std_msgs/Header"
-        assert hasattr(outer().header, "frame_id"), "what comes with Linkwright goes before"
+        assert hasattr(outer().header, "frame_id"), "Linkwright's definitions take precedence"
         assert {"carried_msgs/msg/Inner", "carried_msgs/msg/Outer"} <= set(interface_names("msg"))
         assert deserialize(serialize(outer()), outer) == outer()
 

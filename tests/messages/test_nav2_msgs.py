@@ -1,4 +1,4 @@
-"""nav2_msgs has the fields of Humble, or those of Jazzy if ROS_DISTRO selects it."""
+"""nav2_msgs has Humble's fields, or Jazzy's fields if ROS_DISTRO selects Jazzy."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def test_objects_arrays_and_bytes_are_same_message(transforms, changed):
     message = TFMessage(transforms=transforms)
     data = serialize(message)
     assert data == bytes(rosbags_store().serialize_cdr(rosbags_object(message), TFMessage.TYPE_NAME))
-    for _ in range(3):  # read one by one, then known again
+    for _ in range(3):  # the first time reads each transform, and the others use the cache
         received = deserialize(data, TFMessage)
         batch = received.batch
         assert batch.children == tuple(transform.child_frame_id for transform in transforms)
@@ -63,7 +63,7 @@ def test_objects_arrays_and_bytes_are_same_message(transforms, changed):
         assert received.transforms == transforms
         assert serialize(received) == data
     if transforms:
-        # The same frames with other numbers and stamps.
+        # The same frames with different values and stamps.
         other = copy.deepcopy(transforms)
         other[changed % len(other)].transform.translation.x = 17.0
         other[changed % len(other)].header.stamp = Time(sec=1, nanosec=2)
@@ -92,7 +92,7 @@ def test_frame_names_of_equal_length_are_distinguished():
 
 
 def test_repeated_frames_return_same_tuples():
-    # Receivers keep what they worked out for them.
+    # Receivers cache results by these tuples.
     data = serialize(TFMessage(batch=chain(20)))
     deserialize(data, TFMessage)
     assert deserialize(data, TFMessage).batch.children is deserialize(data, TFMessage).batch.children

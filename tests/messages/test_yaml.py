@@ -27,7 +27,7 @@ OPTIONS = ({}, {"truncate_length": 2}, {"no_arr": True}, {"no_str": True}, {"tru
 
 
 class Dumper(yaml.Dumper):
-    """PyYAML's with rosidl_runtime_py's way with dictionaries that keep their order."""
+    """PyYAML's dumper, which writes ordered dictionaries as rosidl_runtime_py does."""
 
 
 Dumper.add_representer(

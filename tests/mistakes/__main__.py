@@ -9,7 +9,7 @@ from pathlib import Path
 from .cases import read_cases
 
 
-def renew(page: Path) -> None:
+def rewrite_findings(page: Path) -> None:
     """Write the current findings into one file."""
     text = page.read_text(encoding="utf-8")
     for case in read_cases(page):
@@ -21,4 +21,4 @@ def renew(page: Path) -> None:
 
 
 for name in sys.argv[1:] or [path.name for path in sorted(Path(__file__).parent.glob("*.md"))]:
-    renew(Path(__file__).with_name(name))
+    rewrite_findings(Path(__file__).with_name(name))

@@ -1,11 +1,11 @@
-"""Mistakes of learners, written in Markdown: a change to a file of mbot's package, and what ``linkwright check`` says.
+"""Mistakes of learners in Markdown: a change to a file of mbot's package, and the findings of ``linkwright check``.
 
-A ``##`` heading is a case. Its ```` ```diff FILE ```` blocks change files of the package: of each run of ``-`` lines
-and ``+`` lines the first are replaced by the second; the ``-`` lines must occur exactly once in the file. A block with
-``+`` lines only makes a new file. An ```` ```arguments ```` block holds ``name:=value``.
+A ``##`` heading is a case. Its ```` ```diff FILE ```` blocks change files of the package: ``+`` lines replace the ``-``
+lines before them, which must occur exactly once in the file. A block with only ``+`` lines creates a file. An
+```` ```arguments ```` block holds ``name:=value``.
 
-The ```` ```text ```` block is what is said, from the JSON form of the command: place with the end of the marked text,
-severity, code, the marked text in brackets, message; then notes with their places, and hints.
+The ```` ```text ```` block has the findings, from the JSON output of the command: location with the end of the marked
+text, severity, code, the marked text in brackets, message; then notes with their locations, and hints.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def _change(path: Path, change: str) -> None:
         old, new = ("".join(f"{line[1:]}\n" for line in run[side].splitlines()) for side in ("old", "new"))
         if old:
             count = f"\n{text}".count(f"\n{old}")
-            assert count == 1, f"{path.name} has {count} of {old!r}"
+            assert count == 1, f"{path.name} contains {old!r} {count} times"
             text = f"\n{text}".replace(f"\n{old}", f"\n{new}")[1:]
         elif new:
             text += new

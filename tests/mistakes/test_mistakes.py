@@ -27,7 +27,7 @@ def test_mistake_gives_expected_findings(case: Case, tmp_path: Path) -> None:
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
 def test_expected_findings_have_location_and_hint(case: Case) -> None:
     first, *rest = case.expected.splitlines()
-    if not case.arguments:  # a mistake on the command line is in no file
-        assert ":" in first.split()[0], "it has no place"
-        assert "[]" not in first, "it marks nothing"
-    assert any(line.startswith("  hint: ") for line in rest), "it does not say what to do"
+    if not case.arguments:  # a mistake on the command line has no location in a file
+        assert ":" in first.split()[0], "the finding has no location"
+        assert "[]" not in first, "the finding marks no text"
+    assert any(line.startswith("  hint: ") for line in rest), "the finding has no hint"

@@ -109,7 +109,7 @@ def test_wrong_checksum_is_rejected_and_leaves_no_files(model_server, home):
     diagnostic = install_error(entry)
     assert diagnostic.code == "MODEL104"
     assert ARCHIVE_ENTRY.sha256 in str(diagnostic.notes[0].message)
-    assert str(diagnostic.message).startswith(f"'{entry.address}' is not"), "not the path of the temporary file"
+    assert str(diagnostic.message).startswith(f"'{entry.address}' is not"), "the message names the URL"
     assert files_below(home) == set()
 
 

@@ -37,7 +37,7 @@ NAMED_BY_THEMSELVES = (
     "transform",
     "relay_field",
 )
-"""Those whose names have a number that differs each time."""
+"""Nodes whose default names contain a number that differs each time."""
 
 NEED_A_TERMINAL = ("teleop_twist_keyboard",)
 
@@ -67,7 +67,7 @@ async def test_executables_start_and_close(stage, executable, terminal):
         namespace="/robot",
         parameters={
             "robot_description": robot(joint("a")),
-            "port": 0,  # any, for the bridge
+            "port": 0,  # any free port, for the bridge
             "entity_name": "a",
             "node_names": ["a"],
         },
@@ -90,7 +90,7 @@ async def test_default_name_matches_started_node(stage, executable, terminal):
     options = NodeOptions(
         parameters={
             "robot_description": robot(joint("a")),
-            "port": 0,  # any, for the bridge
+            "port": 0,  # any free port, for the bridge
             "entity_name": "a",
             "node_names": ["a"],
         },

@@ -1,4 +1,4 @@
-"""Parameters of nodes from dataclasses; those of controllers, which follow changes, are tested with them."""
+"""Parameters of nodes from dataclasses; parameters of controllers are tested with the controllers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Our nodes as processes of their own, which speak to each other over DDS."""
+"""Our nodes as separate processes, which communicate over DDS."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from linkwright.wire.dds import unavailable_reason
 from tests.domains import own_domain
 from tests.waiting import SECONDS
 
-needs_network = pytest.mark.skipif(bool(unavailable_reason()), reason="needs DDS")
+needs_network = pytest.mark.skipif(bool(unavailable_reason()), reason="cyclonedds is not installed")
 
 
 class Program:
-    """A process, and the lines it has written so far, to either stream."""
+    """A process, and the lines that it has written to both streams so far."""
 
     def __init__(self, arguments: list[str], environment: dict[str, str]) -> None:
         self.process = subprocess.Popen(
@@ -43,10 +43,10 @@ class Program:
                 if text in line:
                     return line
             time.sleep(0.02)
-        raise AssertionError(f"'{text}' did not come: {self.lines}")
+        raise AssertionError(f"'{text}' was not printed: {self.lines}")
 
     def end(self, number: signal.Signals = signal.SIGINT) -> int:
-        """Return the exit status."""
+        """Send a signal unless the process has ended, and return the exit status."""
         if self.process.poll() is None:
             self.process.send_signal(number)
         status = self.process.wait(SECONDS)

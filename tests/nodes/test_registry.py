@@ -1,4 +1,4 @@
-"""Nodes are found through entry points, ours like those of other packages."""
+"""Nodes of Linkwright and of other packages are found through entry points."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.nodes.stage import Stage
 
 
 class Blinker(SingleNode):
-    """A node of a package that is not ours."""
+    """A node of another package."""
 
     def __init__(self, graph, options: NodeOptions) -> None:
         self._node = graph.create_node(options.name or "blinker")

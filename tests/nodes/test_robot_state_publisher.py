@@ -100,7 +100,7 @@ async def test_topics_have_expected_qos(stage, log):
     )
     await stage.graph.settle()
     assert [message.data for message in late] == [TWO]
-    # The audience and the listener ask for reliable joint states; robot_state_publisher takes what there is.
+    # The other subscriptions request reliable joint states, but robot_state_publisher matches best effort too.
     assert sensor.get_subscription_count() == 1
     everywhere = ("/parameter_events", "/rosout")
     assert {name: types for name, types in stage.graph.topics().items() if name not in everywhere} == {
@@ -158,7 +158,7 @@ class TestMimic:
     async def test_mimic_joint_follows_master_in_message(self, stage):
         stage.robot_state_publisher(MIMICS)
         await stage.move({"master": 0.25})
-        # `second` mimics a joint that is not in the message itself: chains are not followed.
+        # `second` mimics a joint that is not in the message: robot_state_publisher does not follow chains.
         assert stage.moved_frames() == [["follower_link", "master_link"]]
         turned = 2 * np.arcsin(stage.buffer.lookup("base", "follower_link")[5])
         assert turned == pytest.approx(-2 * 0.25 + 0.5)
@@ -398,7 +398,7 @@ class TestUpdate:
         assert await stage.set(publisher, robot_description=text) == [(True, "")]
         assert stage.descriptions[-1] == text
         assert stage.tf_static[-1].batch.children == ("g_link",)
-        # The new joint is shown with the very next message, throttle or not.
+        # The next message moves the new joint, although the rate is limited.
         await stage.move({"a": 1.0})
         assert stage.buffer.lookup("base", "a_link")[2] == 7.0
 

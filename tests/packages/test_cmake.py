@@ -66,7 +66,7 @@ def test_install_patterns_select_files(package: Path) -> None:
     ],
 )
 def test_excluded_missing_folder_is_not_required(package: Path, more: str, is_required: bool) -> None:
-    # As file(INSTALL) of CMake 3.25 does: what no pattern takes is passed over, there or not.
+    # As in file(INSTALL) of CMake 3.25: a folder that no pattern selects is skipped, even if it is missing.
     install_rules = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
     assert [item.text for item in install_rules.required_paths] == (["include/"] if is_required else [])
 
@@ -401,7 +401,7 @@ _DONE_BY_CMAKE = [
         ["x/urdf/arm.urdf"],
     ),
 ]
-"""Texts of a CMakeLists.txt, and what CMake itself installs for them."""
+"""Texts of a CMakeLists.txt, and the files that CMake itself installs for them."""
 
 
 @pytest.mark.parametrize(("text", "destinations"), _DONE_BY_CMAKE)

@@ -77,7 +77,7 @@ def test_colcon_install_folder_is_found_from_inside_workspace(tmp_path: Path, me
 
 def test_packages_of_current_prefix_are_found_by_markers(tmp_path: Path) -> None:
     share = install(tmp_path / "ros", "arm-data")
-    make_source(share, "arm_descriptions")  # addresses say the marker's name
+    make_source(share, "arm_descriptions")  # URIs use the name of the marker
     (share / "urdf").mkdir()
     other = install(tmp_path / "ros", "meshes")
     package_finder = finder(share / "urdf")

@@ -32,7 +32,7 @@ def test_build_hidden_and_deep_folders_are_skipped(tmp_path: Path):
     assert launch_files_below(tmp_path / "nowhere") == []
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="links need a right there, without which none are made")
+@pytest.mark.skipif(sys.platform == "win32", reason="symbolic links need a privilege on Windows")
 def test_launch_file_in_source_and_install_folder_is_listed_once(tmp_path: Path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     package = tmp_path / "arm"

@@ -140,7 +140,7 @@ def test_layout_places_files_moved_by_setup_py(write: Callable[..., Path]) -> No
     share = finder_of(package).share("arm")
     assert (share / "config" / "a.yaml").read_text() == "a"
     assert (share / "urdf" / "hand.xacro").read_text() == ROBOT
-    assert (share / "config" / "kept.txt").is_file(), "what is not installed is not taken away"
+    assert (share / "config" / "kept.txt").is_file(), "files that are not installed stay"
 
 
 def by_address(finder: PackageFinder) -> str:
@@ -185,7 +185,7 @@ def test_package_without_moved_files_is_its_own_share_folder(write: Callable[...
 def test_layout_is_updated_for_new_file_and_old_layout_removed(moved: Path, cache: Path) -> None:
     finder = finder_of(moved)
     before = finder.share("arm")
-    assert finder_of(moved).share("arm") == before, "nothing is made twice"
+    assert finder_of(moved).share("arm") == before, "an existing layout is reused"
     (moved / "bringup" / "config" / "more.yaml").write_text("")
     month_ago = time.time() - 30 * 86400
     os.utime(before.parent, (month_ago, month_ago))

@@ -14,7 +14,7 @@ def gate():
     return Gate("127.0.0.1", new_token())
 
 
-def is_let_in(gate, *, host="127.0.0.1:7447", origin=None):
+def is_admitted(gate, *, host="127.0.0.1:7447", origin=None):
     return gate.refusal({"Host": host} | ({"Origin": origin} if origin is not None else {})) is None
 
 
@@ -39,7 +39,7 @@ def test_servers_have_different_tokens(gate):
     "host", ["127.0.0.1", "127.0.0.1:80", "localhost:9000", "LOCALHOST", "[::1]:7447", "192.168.1.5:7447", "localhost."]
 )
 def test_host_names_of_this_machine_are_accepted(gate, host):
-    assert is_let_in(gate, host=host)
+    assert is_admitted(gate, host=host)
 
 
 @pytest.mark.parametrize(
@@ -59,11 +59,11 @@ def test_host_names_of_this_machine_are_accepted(gate, host):
     ],
 )
 def test_other_host_names_are_rejected(gate, host):
-    assert not is_let_in(gate, host=host)
+    assert not is_admitted(gate, host=host)
 
 
 def test_bound_host_name_is_accepted():
-    assert is_let_in(Gate("robot.lan", new_token()), host="robot.lan")
+    assert is_admitted(Gate("robot.lan", new_token()), host="robot.lan")
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_bound_host_name_is_accepted():
     ],
 )
 def test_only_pages_of_same_origin_are_accepted(gate, origin, may):
-    assert is_let_in(gate, origin=origin) == may
+    assert is_admitted(gate, origin=origin) == may
 
 
 @given(st.text(), st.text())

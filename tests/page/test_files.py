@@ -36,7 +36,7 @@ def index(tmp_path, robot):
 
 
 def served_path(index: MeshIndex, url: str) -> Path:
-    """Return what the server reads for an address."""
+    """Return the path that the server reads for a URL."""
     folders = MeshFolders()
     folders.replace("display-1", index.folders)
     _, _, key, relative = url.partition("?")[0].split("/", 3)

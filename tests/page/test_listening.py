@@ -58,11 +58,11 @@ def test_url_of_wildcard_address_is_loopback():
         assert url_of(listener) == f"http://127.0.0.1:{listener.getsockname()[1]}/"
 
 
-@pytest.mark.skipif(not socket.has_ipv6, reason="no IPv6 here")
+@pytest.mark.skipif(not socket.has_ipv6, reason="this machine has no IPv6")
 def test_ipv6_url_has_brackets():
     try:
         listener = listen("::1", 0)
     except LinkwrightError:
-        pytest.skip("IPv6 is switched off here")
+        pytest.skip("IPv6 is disabled on this machine")
     with listener:
         assert url_of(listener).startswith("http://[::1]:")

@@ -26,9 +26,8 @@ WORDS += ["tip", "rviz_default_plugins/Grid", "rviz_default_plugins/Orbit", "rvi
 ROWS = ("Enabled", "Topic", "Topic/Depth", "Alpha", "Decay Time")
 IDS = ["global/Fixed Frame", "tool-6", "tool-6/Topic", *(f"display-{number}" for number in range(1, 14))]
 IDS += [f"{display}/{row}" for display in IDS[3:] for row in ROWS]
-MESSAGES = [
-    subclass for subclass in PageMessage.__subclasses__() if subclass is not Received
-]  # which pages must not lie about
+# A page must not send false acknowledgments.
+MESSAGES = [subclass for subclass in PageMessage.__subclasses__() if subclass is not Received]
 MESSAGES += [SetProperty] * 30
 
 

@@ -19,7 +19,7 @@ from linkwright.page.access import is_local_connection
 from linkwright.page.peers import may_be_own_user
 from tests.waiting import SECONDS
 
-linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="tables of Linux")
+linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the tables of connections are Linux's")
 FAMILIES = ("127.0.0.1", "127.0.0.1"), ("127.0.0.1", "::ffff:127.0.0.1"), ("::1", "::1"), ("::", "127.0.0.1")
 NOBODY = 65534
 

@@ -12,7 +12,7 @@ import pytest
 from linkwright.page.access import load_token, store_pages_wait, token_folder
 
 PORT = 7448
-posix = pytest.mark.skipif(os.name != "posix", reason="Windows guards the user's folders itself")
+posix = pytest.mark.skipif(os.name != "posix", reason="Windows protects the user's folders itself")
 
 
 def test_next_program_on_port_has_same_token():
@@ -27,7 +27,7 @@ def test_pages_wait_is_stored_for_next_program_only():
     token = load_token(PORT).token
     store_pages_wait(PORT, token, pages_wait=True)
     assert load_token(PORT).pages_wait
-    assert not load_token(PORT).pages_wait  # that program was killed, or nobody had its page open
+    assert not load_token(PORT).pages_wait  # the next program was killed, or its page was not open
     store_pages_wait(PORT, token, pages_wait=False)
     assert not load_token(PORT).pages_wait
 

@@ -18,7 +18,7 @@ from linkwright.page.access import MAX_CONNECTIONS
 from linkwright.page.audience import MAX_PAGES
 from linkwright.page.protocol.configuration import DisplayStatus, StatusRow
 from linkwright.page.server import MAX_MESSAGE_SIZE
-from tests.leaving import UPGRADE, ask_and_leave
+from tests.leaving import UPGRADE, request_and_reset
 from tests.page.test_files import package, write
 from tests.viewer.scene import open_world, page
 from tests.waiting import SECONDS, eventually
@@ -84,7 +84,7 @@ async def test_mesh_is_compressed_for_browser_that_accepts_it(served, robot):
     assert (await raw(served.viewer, url, Accept_Encoding="gzip", If_None_Match=tag))[:2] == (304, "")
     mesh.write_bytes(random.Random(1).randbytes(20_000))
     assert "content-encoding" not in (await raw(served.viewer, url, Accept_Encoding="gzip"))[2], (
-        "it would not be smaller"
+        "compression would not make the mesh smaller"
     )
 
 
@@ -161,12 +161,12 @@ async def test_paths_do_not_lead_out_of_page_folder(served, target):
 
 
 async def test_only_static_page_is_served_without_token(served):
-    """The files of every wheel, and no data of the viewer."""
+    """These are files that every wheel contains, without data of the viewer."""
     for query in ("", "?token=", "?token=wrong"):
         status, body, _ = await raw(served.viewer, f"/ws{query}", token=False)
         assert status == 401
         assert "open the address that linkwright printed" in body
-    assert (await raw(served.viewer, "/", token=False))[0] in (200, 503)  # where the page is not built it says so
+    assert (await raw(served.viewer, "/", token=False))[0] in (200, 503)  # 503 if the page is not built
     assert (await raw(served.viewer, "/assets/gone.js", token=False))[0] == 404
 
 
@@ -181,21 +181,21 @@ async def test_web_socket_requires_token(served):
 
 
 async def test_responses_set_no_cookies(served):
-    """Browsers would send it to all ports of this host."""
+    """Browsers would send a cookie to all ports of this host."""
     for target in ("/", "/ws", "/nothing", mesh_url(served.viewer)):
         for proto in ("http", "https"):
             assert "set-cookie" not in (await raw(served.viewer, target, X_Forwarded_Proto=proto))[2]
 
 
 async def test_mesh_url_contains_secret(served, robot, monkeypatch):
-    """Image elements fetch textures without a token: their addresses are sent to pages only."""
+    """Image elements fetch textures without a token, so only pages get the URLs."""
     address = mesh_url(served.viewer)
     assert (await raw(served.viewer, address, token=False))[:2] == (200, "solid arm")
     label, _, secret = address.split("/")[2].partition("~")
     assert re.fullmatch("[0-9a-f]{32}", secret)
     for key in (label, f"{label}~", f"{label}~{'0' * 32}", f"{label}~{secret[:-1]}", "robot", ""):
         assert (await raw(served.viewer, f"/mesh/{key}/meshes/arm.stl"))[0] == 404
-    # Nor does another run of the program tell it.
+    # Another run of the program has another secret.
     monkeypatch.setattr(files, "_SECRET", bytes(32))
     other = files.ServedFolder(robot, "robot").key
     assert other.startswith(f"{label}~")
@@ -290,15 +290,15 @@ def memory() -> int:
     return psutil.Process().memory_info().rss
 
 
-async def knock(viewer, said: bytes = b"") -> asyncio.StreamWriter:
+async def open_raw_connection(viewer, said: bytes = b"") -> asyncio.StreamWriter:
     address = urlsplit(viewer.url)
     _, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(said)
     return writer
 
 
-async def is_served(client) -> None:
-    """Check that the open page still receives answers."""
+async def expect_response(client) -> None:
+    """Assert that the open page still receives responses."""
     wanted = "tip" if client.messages and "base" in str(client.messages[-1]) else "base"
     await client.set("global/Fixed Frame", wanted)
     await client.until("property_changed", id="global/Fixed Frame", value=wanted)
@@ -308,15 +308,15 @@ async def test_thousand_idle_connections_do_not_disturb_pages(served):
     async with page(served.viewer) as client:
         await client.opened()
         before = memory()
-        knocking = [await knock(served.viewer) for _ in range(1000)]
-        await is_served(client)
-        # Those that say nothing make room for one who shows the token.
+        knocking = [await open_raw_connection(served.viewer) for _ in range(1000)]
+        await expect_response(client)
+        # Silent connections are closed for a client with the token.
         assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")
         await eventually(lambda: served.viewer._server.web._admission._count <= MAX_CONNECTIONS)
         assert memory() - before < 64 << 20
         for connection in knocking:
             connection.close()
-        await is_served(client)
+        await expect_response(client)
 
 
 async def test_web_sockets_beyond_maximum_are_rejected(served):
@@ -337,7 +337,7 @@ async def test_web_sockets_beyond_maximum_are_rejected(served):
         await client.opened()
         for _ in range(10):
             sockets += await asyncio.gather(*(connect() for _ in range(100)))
-            await is_served(client)
+            await expect_response(client)
         assert set(statuses) <= {0, 503}
         assert len(statuses) >= 1000 - MAX_PAGES
         assert len(served.viewer._audience) <= MAX_PAGES
@@ -351,7 +351,7 @@ async def test_incomplete_request_times_out(served, monkeypatch):
         writer.write(text)
         ended = asyncio.ensure_future(reader.read())
         while not ended.done():
-            writer.write(b"a")  # a byte now and then changes nothing
+            writer.write(b"a")  # single bytes do not extend the time limit
             await asyncio.wait([ended], timeout=0.02)
         assert isinstance(ended.exception(), (ConnectionError, type(None)))
         writer.close()
@@ -364,18 +364,18 @@ async def test_connected_page_does_not_time_out(served, monkeypatch):
         address = urlsplit(served.viewer.url)
         silent, writer = await asyncio.open_connection(address.hostname, address.port)
         with suppress(ConnectionError):
-            await silent.read()  # one that came later has waited too long
+            await silent.read()  # a newer, silent connection has timed out
         writer.close()
-        await is_served(client)
+        await expect_response(client)
 
 
 async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, monkeypatch):
-    """The page's files are public: they are in memory once, and their readers make room for clients with the token."""
+    """The page's public files are in memory once, and their readers are dropped in favor of clients with the token."""
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
     server = served.viewer._server.web
     monkeypatch.setattr(server, "_page_folder", tmp_path)
-    monkeypatch.setattr("linkwright.page.server._HEARTBEAT", 600.0)  # the page answers only while it is read
+    monkeypatch.setattr("linkwright.page.server._HEARTBEAT", 600.0)  # the client answers heartbeats only while it reads
     address = urlsplit(served.viewer.url)
     asking = f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode()
     async with page(served.viewer) as client:
@@ -385,7 +385,7 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
             writer.write(asking)
         for reader, _ in readers[1:]:
             await reader.readexactly(100)
-        await is_served(client)
+        await expect_response(client)
         assert len(server._page_contents) == 1
         waiting = [
             stranger._transport.get_write_buffer_size()
@@ -397,7 +397,7 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
         assert (status, len(body)) == (200, 4 << 20)
         for _, writer in readers:
             writer.close()
-        await is_served(client)
+        await expect_response(client)
 
 
 async def test_slow_download_of_page_does_not_time_out(served, tmp_path, monkeypatch):
@@ -412,7 +412,7 @@ async def test_slow_download_of_page_does_not_time_out(served, tmp_path, monkeyp
     await reader.readuntil(b"\r\n\r\n")
     silent, other = await asyncio.open_connection(address.hostname, address.port)
     with suppress(ConnectionError):
-        await silent.read()  # one that came later has waited too long
+        await silent.read()  # a newer, silent connection has timed out
     assert len(await reader.read()) == 16 << 20
     writer.close()
     other.close()
@@ -503,7 +503,7 @@ async def test_malformed_requests_are_not_logged(served, message, caplog):
 async def test_disconnected_client_is_not_logged(served, target, caplog):
     address = urlsplit(served.viewer.url)
     for headers in ("", UPGRADE):
-        await ask_and_leave(address.port, f"{target}?{address.query}", headers)
+        await request_and_reset(address.port, f"{target}?{address.query}", headers)
     assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
     assert [record.getMessage() for record in caplog.records] == []
 
@@ -523,7 +523,7 @@ async def test_message_flood_slows_only_its_sender(served):
         task = asyncio.ensure_future(flood())
         await eventually(lambda: sent > 100)
         for _ in range(5):
-            await is_served(client)
+            await expect_response(client)
         assert not task.done()
         task.cancel()
         await asyncio.gather(task, return_exceptions=True)

@@ -101,7 +101,7 @@ class Watcher:
         self._pieces += data[16:]
         return bytes(self._pieces) if len(self._pieces) == length else b""
 
-    def of(self, kind: str) -> list[dict]:
+    def contents_of_kind(self, kind: str) -> list[dict]:
         return [fields for _, fields in self.contents if fields["kind"] == kind]
 
 
@@ -140,7 +140,7 @@ async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int 
 )
 @skipping
 async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
-    """Less is known about a page that acknowledges nothing, such as another program."""
+    """The server knows less about a client that acknowledges nothing, such as another program."""
     async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT) as url:
         async with watching(url, answers=answers) as watcher:
             began = watcher.now()
@@ -148,8 +148,8 @@ async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
         settled = [delay for at, delay in watcher.delays if at - began > 2.0]
         assert len(settled) > 10
         assert max(settled) < latest
-        steps = [fields["step"] for fields in watcher.of("cloud_points")]
-        frames = watcher.of("image_frame")
+        steps = [fields["step"] for fields in watcher.contents_of_kind("cloud_points")]
+        frames = watcher.contents_of_kind("image_frame")
         assert steps[-1] > 10
         assert frames[-1]["encoding"] == "file"
         assert frames[-1]["width"] == 1280
@@ -160,9 +160,9 @@ async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
 async def test_fast_connection_receives_full_data():
     async with open_world(RvizConfig.parse(FILE)) as world, watching(world.viewer.url) as watcher:
         await publish_all(world, 1.5)
-        assert watcher.of("cloud_points")[-1]["step"] == 1
-        assert watcher.of("cloud_points")[-1]["positions"].size == 300_000
-        assert watcher.of("image_frame")[-1]["encoding"] == "rgb"
+        assert watcher.contents_of_kind("cloud_points")[-1]["step"] == 1
+        assert watcher.contents_of_kind("cloud_points")[-1]["positions"].size == 300_000
+        assert watcher.contents_of_kind("image_frame")[-1]["encoding"] == "rgb"
 
 
 @skipping
@@ -173,7 +173,11 @@ async def test_single_cloud_is_completed_on_fast_connection():
         )
         await eventually(lambda: watcher.sizes)
         clouds.publish(cloud(100_000))
-        await eventually(lambda: watcher.of("cloud_points") and watcher.of("cloud_points")[-1]["step"] == 1)
+        await eventually(
+            lambda: (
+                watcher.contents_of_kind("cloud_points") and watcher.contents_of_kind("cloud_points")[-1]["step"] == 1
+            )
+        )
 
 
 @skipping
@@ -184,11 +188,11 @@ async def test_thinned_cloud_is_completed_when_page_is_idle():
         )
         await eventually(lambda: watcher.sizes)
         clouds.publish(cloud(20_000))
-        await eventually(lambda: bool(watcher.of("cloud_points")))
-        assert watcher.of("cloud_points")[-1]["step"] > 1
+        await eventually(lambda: bool(watcher.contents_of_kind("cloud_points")))
+        assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         watcher.busy = 0.0
-        await eventually(lambda: watcher.of("cloud_points")[-1]["step"] == 1)
-        assert watcher.of("cloud_points")[-1]["positions"].size == 60_000
+        await eventually(lambda: watcher.contents_of_kind("cloud_points")[-1]["step"] == 1)
+        assert watcher.contents_of_kind("cloud_points")[-1]["positions"].size == 60_000
 
 
 @skipping
@@ -203,21 +207,21 @@ async def test_cloud_over_slow_connection_does_not_delay_transforms():
         )
         await eventually(lambda: watcher.sizes > 0)
         clouds.publish(cloud(20_000))
-        await eventually(lambda: watcher.of("cloud_points"))
-        assert watcher.of("cloud_points")[-1]["step"] > 1
+        await eventually(lambda: watcher.contents_of_kind("cloud_points"))
+        assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         x = 0.0
-        while watcher.of("cloud_points")[-1]["step"] > 1:
+        while watcher.contents_of_kind("cloud_points")[-1]["step"] > 1:
             x += 1.0
             world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
             moved = x
             await eventually(lambda moved=moved: watcher.x == moved)
-        assert watcher.of("cloud_points")[-1]["positions"].size == 60_000
-        assert x > 5  # the last 320 kB alone are 1.3 s
+        assert watcher.contents_of_kind("cloud_points")[-1]["positions"].size == 60_000
+        assert x > 5  # sending the last 320 kB alone takes 1.3 s
 
 
 @skipping
 async def test_four_pages_drop_only_stale_frames():
-    """At 100 Hz; one of the pages is slow, and no page waits for another."""
+    """Transforms are published at 100 Hz. One page is slow, and the others do not wait for it."""
     async with open_world(RvizConfig.parse(FILE.replace("Rate: 50", "Rate: 100"))) as world:
         async with (
             slow_line(world.viewer.url, 25_000.0) as url,
@@ -231,11 +235,11 @@ async def test_four_pages_drop_only_stale_frames():
             world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
             await eventually(lambda: slow.x == x)
         for quick in (a, b, c):
-            assert len(quick.delays) > 270  # of 300
+            assert len(quick.delays) > 270  # of 300 frames
             assert np.percentile([delay for _, delay in quick.delays[:-1]], 95) < 0.2
         assert len(slow.delays) < len(a.delays)
         for client in (a, b, c, slow):
-            assert client.x == x  # the last place arrives everywhere
+            assert client.x == x  # all pages receive the last pose
 
 
 class Hand:

@@ -19,10 +19,10 @@ from tests.skipping import skipping
 from tests.viewer.scene import Client, World
 
 SECONDS = 5.0
-"""In place of the minute after which what nobody goes on with is given up."""
+"""The seconds after which an abandoned upload is removed; normally a minute."""
 
 REFUSED = -1
-"""In place of a status: the user is told a problem."""
+"""Replaces the HTTP status if the response has a problem for the user."""
 
 
 @pytest.fixture(autouse=True)
@@ -36,7 +36,7 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def little_patience(monkeypatch: pytest.MonkeyPatch) -> None:
+def short_time_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the time limits to seconds."""
     monkeypatch.setattr(uploads, "PATIENCE", SECONDS)
     monkeypatch.setattr(guests, "PATIENCE", SECONDS)
@@ -107,7 +107,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def left(scratch: Path) -> list[str]:
+def list_uploads(scratch: Path) -> list[str]:
     return [path.name for path in scratch.iterdir()]
 
 
@@ -122,7 +122,9 @@ async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Pa
             timeline = await client.until("timeline")
             assert (timeline["name"], timeline["live"], timeline["end"] - timeline["start"]) == ("drive", False, 10)
             await client.until("playhead", playing=True)
-        assert "/p" not in dict(world.viewer.context.node.get_topic_names_and_types()), "it is in a graph of its own"
+        assert "/p" not in dict(world.viewer.context.node.get_topic_names_and_types()), (
+            "recordings have their own graph"
+        )
         async with recording_page(sender, "no-such-recording") as client:
             assert (await client.until("hello"))["title"] == ""
 
@@ -151,7 +153,7 @@ async def test_upload_requires_token_and_same_origin(scratch: Path):
             headers = {"Origin": "http://elsewhere.example"}
             status, _ = await sender.ask(method, path, headers=headers)
             assert status == 403
-        assert not left(scratch)
+        assert not list_uploads(scratch)
 
 
 @skipping
@@ -175,7 +177,7 @@ async def test_invalid_or_oversized_recording_is_rejected_before_upload(
         given, answer = await sender.announce(name, files)
         assert given == status, answer
         assert status == 400 or answer["problem"]
-        assert not left(scratch)
+        assert not list_uploads(scratch)
 
 
 @skipping
@@ -188,7 +190,7 @@ async def test_unreadable_recording_is_reported_without_server_path(scratch: Pat
         assert status == REFUSED
         assert "'x.mcap'" in answer["problem"]
         assert str(scratch) not in answer["problem"]
-        assert not left(scratch)
+        assert not list_uploads(scratch)
 
 
 @skipping
@@ -235,10 +237,10 @@ async def test_file_of_wrong_size_is_rejected_and_can_be_resent(tmp_path: Path):
     async with upload_server() as (_, sender):
         _, answer = await sender.announce("x", {"x.mcap": 100})
         assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 50))[0] == 400
-        assert (await sender.ask("POST", f"recordings/{answer['key']}"))[0] == 404, "it is not there"
+        assert (await sender.ask("POST", f"recordings/{answer['key']}"))[0] == 404, "the file was removed"
         assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 200))[0] == 400
         assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 100))[0] == 204
-        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 100))[0] == 404, "it is there"
+        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 100))[0] == 404, "the file exists"
 
 
 @skipping
@@ -246,11 +248,11 @@ async def test_canceled_or_stalled_upload_is_removed(scratch: Path):
     async with upload_server() as (_, sender):
         _, given_up = await sender.announce("x", {"x.mcap": 100})
         _, forgotten = await sender.announce("x", {"x.mcap": 100})
-        assert len(left(scratch)) == 2
+        assert len(list_uploads(scratch)) == 2
         assert (await sender.ask("DELETE", f"recordings/{given_up['key']}"))[0] == 204
-        assert len(left(scratch)) == 1
+        assert len(list_uploads(scratch)) == 1
         await asyncio.sleep(2 * SECONDS)
-        assert not left(scratch)
+        assert not list_uploads(scratch)
         assert (await sender.ask("PUT", f"recordings/{forgotten['key']}/0", data=b"x" * 100))[0] == 404
 
 
@@ -262,7 +264,7 @@ async def test_number_of_simultaneous_uploads_is_limited(scratch: Path):
         status, answer = await sender.announce("x", {"x.mcap": 1})
         assert status == REFUSED
         assert "wait" in answer["problem"]
-    assert not left(scratch), "the end of the program removes them"
+    assert not list_uploads(scratch), "the end of the program removes the files"
 
 
 @skipping
@@ -274,10 +276,10 @@ async def test_recording_is_closed_after_its_last_page(tmp_path: Path, scratch: 
             await client.until("timeline")
             answering = asyncio.create_task(answer_pings(client))
             await asyncio.sleep(3 * SECONDS)
-            assert len(left(scratch)) == 1, "a page looks at it"
+            assert len(list_uploads(scratch)) == 1, "a page shows the recording"
             answering.cancel()
         await asyncio.sleep(2 * SECONDS)
-        assert not left(scratch)
+        assert not list_uploads(scratch)
 
 
 @skipping
@@ -290,9 +292,9 @@ async def test_open_recordings_are_limited_and_removed_at_exit(tmp_path: Path, s
         status, answer = await sender.send("drive", files)
         assert status == REFUSED
         assert "already open" in answer["problem"]
-        assert len(left(scratch)) == 4
+        assert len(list_uploads(scratch)) == 4
         await asyncio.sleep(11)
         status, answer = await sender.send("drive", files)
-        assert status == 200, "the one that was left first makes room"
-        assert len(left(scratch)) == 4
-    assert not left(scratch)
+        assert status == 200, "the upload that was abandoned first is removed"
+        assert len(list_uploads(scratch)) == 4
+    assert not list_uploads(scratch)

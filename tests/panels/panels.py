@@ -29,7 +29,7 @@ Panels:
     Name: Views
     Splitter Ratio: 0.5
 """
-"""As RViz writes them, with one of a plugin."""
+"""The panels as RViz writes them, and one panel of a plugin."""
 
 
 def window_state(collapsed: tuple[str, ...] = (), hide_right: bool = False, **hidden: bool) -> str:
@@ -39,7 +39,7 @@ def window_state(collapsed: tuple[str, ...] = (), hide_right: bool = False, **hi
     for name, shown in docks.items():
         text = name.encode("utf-16-be").hex()
         state += f"fb{len(text) // 2:08x}{text}{1 if shown else 0:02x}" + "000001e10000009b0000006400ffffff"
-    # A place that a dock had once.
+    # A position that a dock had earlier.
     state += "fb0000000a00560069006500770073" + "03" + "0000004e00000080000002e100000197"
     lines = ["Window Geometry:", f"  Hide Left Dock: false\n  Hide Right Dock: {str(hide_right).lower()}"]
     lines += [f"  QMainWindow State: {state}00000004000000040000000800000008fc00000000"]

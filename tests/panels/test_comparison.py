@@ -118,7 +118,7 @@ async def test_page_receives_differences_with_links(tmp_path):
         assert message["new"]["label"].endswith("new.urdf")
         assert marks(message, "old") == {"camera": "removed"}
         assert marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
-        assert message["joints"] == {"turn": "spin"}, "a joint that turned and slides now follows nothing"
+        assert message["joints"] == {"turn": "spin"}, "a joint of another type has no counterpart"
         items = {(item["subject"], item["name"], item["property"]): item for item in message["items"]}
         mass = items["link", "lower", "inertial mass"]
         assert (mass["old"], mass["new"], mass["unit"], mass["element"]) == ("1", "2", "kg", "lower")
@@ -139,14 +139,14 @@ async def test_old_robot_follows_joints_of_new_robot(tmp_path):
         await client.until("compared_descriptions")
         await eventually(lambda: both.pose("old/camera") is not None)
         assert both.pose("old/lower") == pytest.approx([0, 0, 0, 0, 0, 0, 1], abs=1e-6)
-        half = 0.75 / 2  # the middle of limits without zero, as joint_state_publisher has it
+        half = 0.75 / 2  # the middle of limits that exclude zero, as in joint_state_publisher
         assert both.pose("old/upper")[:3] == pytest.approx([1, 0, 0], abs=1e-6)
         assert both.pose("old/upper")[3:] == pytest.approx([np.sin(half), 0, 0, np.cos(half)], abs=1e-6)
         both.move(spin=np.pi, bend=0.9)
         turned = [-1, 0, 0]
         await eventually(lambda: np.allclose(both.pose("old/upper")[:3], turned, atol=1e-6))
         assert both.pose("old/lower")[3:] == pytest.approx([0, 0, 1, 0], abs=1e-6)
-        assert np.linalg.norm(both.pose("old/upper")[:3]) == pytest.approx(1.0), "its joint does not slide"
+        assert np.linalg.norm(both.pose("old/upper")[:3]) == pytest.approx(1.0), "the old joint is revolute"
 
 
 async def test_new_root_moves_old_robot(tmp_path):
@@ -169,7 +169,7 @@ async def test_edited_description_is_compared_again(tmp_path):
         both.show_new()
         fewer = await client.until("compared_descriptions")
         assert len(fewer["items"]) == count - 1
-        assert "lower" in marks(fewer, "new"), "its joint has another name"
+        assert "lower" in marks(fewer, "new"), "the name of its joint differs"
         both.write(tmp_path, "old.urdf", both.pair.new.path.read_text(encoding="utf-8"))
         both.show_old()
         same = await client.until("compared_descriptions")

@@ -114,7 +114,7 @@ async def test_inertia_is_shown_as_equivalent_box(files):
     assert (base["mass"], base["center"]) == (6, [0, 0, 0.1])
     # A cube of edge a has I = m a2 / 6.
     assert base["box"] == pytest.approx([(0.05 * 6 / 6) ** 0.5] * 3)
-    assert left["box"] == []  # 1 > 0.1 + 0.1: no body has that
+    assert left["box"] == []  # 1 > 0.1 + 0.1 is impossible for a body
 
 
 async def test_implausible_inertias_are_reported_for_each_link_of_macro(files):
@@ -144,7 +144,7 @@ async def test_texts_are_sent_only_for_files_of_description(files):
         for other in ("secret.txt", "../secret.txt", "wheel.xacro/../secret.txt"):
             assert await text_of(str(files / other)) is None
         assert await text_of("/etc/hostname") is None
-        # What elements were written in stays what it was when the description was made.
+        # The page gets the texts from which the description was made.
         (files / "wheel.xacro").write_text("<robot/>")
         assert await text_of(str(files / "wheel.xacro")) == WHEEL
 
@@ -176,7 +176,7 @@ async def test_opened_page_is_notified_of_description():
             assert (message["links"], message["joints"]) == ([], [])
             details = await ask(client, "request_description", "description", display=DISPLAY)
     assert details["revision"] == message["revision"]
-    # Nobody knows of files: there is the text alone.
+    # The description was published as text, without files.
     assert details["files"] == []
     assert details["links"][0]["written"]["origin"] is None
     assert details["links"][0]["written"]["expanded"]["line"] == 2
@@ -229,7 +229,7 @@ async def test_page_with_own_displays_receives_only_their_descriptions(files):
         async with page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as alone:
             mine = await alone.until("description_changed")
             assert mine["display"] != answer["display"]
-            await alone.send("request_description", display=answer["display"])  # which it does not see
+            await alone.send("request_description", display=answer["display"])  # this page does not have that display
             details = await ask(alone, "request_description", "description", display=mine["display"])
             assert details["display"] == mine["display"]
             describe(world, files)

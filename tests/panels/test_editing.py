@@ -56,7 +56,7 @@ def write(file: Path, text: str) -> None:
     file.write_text(text)
 
 
-def gone(file: Path) -> None:
+def delete_file(file: Path) -> None:
     file.unlink()
 
 
@@ -179,7 +179,7 @@ async def test_malformed_or_missing_file_is_reported_and_editing_continues(file:
         await client.until("description_changed")
         write(file, "<robot")
         assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"].startswith("XML")
-        gone(file)
+        delete_file(file)
         assert (await preview(client, 2, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is not None
         write(file, ROBOT)
         assert (await preview(client, 3, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is None

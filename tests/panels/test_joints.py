@@ -13,7 +13,7 @@ from linkwright.panels.joints import JointsFeature
 from tests.waiting import eventually
 
 PAGE = object()
-"""Whoever asks; the bridge tells all pages."""
+"""The page that sends requests; the bridge informs all pages."""
 
 GRIPPER = """\
 <robot name="gripper">

@@ -13,17 +13,17 @@ from tests.viewer.scene import World, open_world, page
 KEPT = 10_000_000
 
 
-def moved(world: World, x: float) -> int:
+def move_arm(world: World, x: float) -> int:
     """Publish the position of the arm, and return the time in nanoseconds."""
     world.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
     return world.graph.timebase.now_ns()
 
 
-async def filled(world: World) -> list[float]:
+async def publish_positions(world: World) -> list[float]:
     """Publish five positions of a frame, one each second, and return the times halfway between, in seconds."""
     between = []
     for x in range(5):
-        moved(world, float(x))
+        move_arm(world, float(x))
         await asyncio.sleep(0.5)
         between.append(world.graph.timebase.now_ns() / 1e9)
         await asyncio.sleep(0.5)
@@ -36,18 +36,18 @@ async def test_live_view_pauses_seeks_and_returns_to_live():
         timeline = await client.until("timeline")
         assert timeline["live"]
         await client.until("playhead", live=True)
-        between = await filled(world)
+        between = await publish_positions(world)
         await arrived(client, "tip", 4)
         await client.send("play", playing=False)
         await client.until("playhead", live=False, playing=False)
-        moved(world, 9.0)
+        move_arm(world, 9.0)
         for number in (1, 3, 0):
             await client.send("seek_time", position=between[number])
             await arrived(client, "tip", number)
         await client.send("step_time", forward=True)
         await arrived(client, "tip", 1)
         clock = world.viewer.context.node.get_clock()
-        assert between[0] < clock.now().nanoseconds / 1e9 < between[1], "the viewer's clock is that of what is shown"
+        assert between[0] < clock.now().nanoseconds / 1e9 < between[1], "the viewer's clock has the shown time"
         await client.send("go_live")
         await client.until("playhead", live=True)
         await arrived(client, "tip", 9)
@@ -58,7 +58,7 @@ async def test_live_view_pauses_seeks_and_returns_to_live():
 async def test_playback_of_history_reaches_live():
     async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         await client.until("playhead", live=True)
-        between = await filled(world)
+        between = await publish_positions(world)
         await client.send("seek_time", position=between[0])
         await client.until("playhead", live=False)
         await client.send("set_playback", speed=10, loop=False)
@@ -94,7 +94,7 @@ async def test_pending_messages_are_stored_when_history_is_read():
     async with open_world(config(), history=KEPT) as world:
         live = world.viewer.live
         for x in range(3):
-            moved(world, float(x))
+            move_arm(world, float(x))
         assert live.size == 0
         assert not live.has_playback
         began, end = live.span_ns
@@ -109,18 +109,18 @@ async def test_pending_messages_are_stored_when_history_is_read():
 async def test_pending_messages_are_stored_in_batches():
     async with open_world(config(), history=KEPT) as world:
         for x in range(20):
-            moved(world, float(x))
+            move_arm(world, float(x))
         assert world.viewer.live.size > 0
 
 
 async def test_unserializable_message_is_reported_and_others_are_stored():
     async with open_world(config(), history=KEPT) as world:
-        began = moved(world, 1.0)
+        began = move_arm(world, 1.0)
         wrong = String()
-        wrong._data = 7  # as no setter would let it be
+        wrong._data = 7  # the setter would reject this value
         world.viewer.context.node.create_subscription(String, "words", lambda _: None, 10)
         world.graph.create_node("speaker").create_publisher(String, "words", 10).publish(wrong)
-        end = moved(world, 2.0)
+        end = move_arm(world, 2.0)
         assert [topic for topic, _, _ in world.viewer.live.history.messages_between(began, end)] == ["/tf", "/tf"]
         assert any("keeping a message of '/words' failed" in record.text for record in world.log)
 

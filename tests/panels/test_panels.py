@@ -45,7 +45,7 @@ def test_panels_on_collapsed_window_side_are_not_shown():
         "selection",
         "tool-properties",
     ]
-    # RViz shows what is collapsed on a side that is not hidden.
+    # RViz shows a collapsed dock if its side is not hidden.
     assert "views" in (parsed(window_state(("Views",), Views=False)).panels.shown or [])
 
 
@@ -56,7 +56,7 @@ def test_rviz1_panel_names_are_recognized_and_unnamed_entries_skipped():
     config.panels.show(["displays", "time", "selection", "transformation"])
     assert config.panels.shown == ["displays", "time", "selection"]
     assert "rviz/Selection" in config.text()
-    assert "Transformation" not in config.text(), "RViz 1 has none"
+    assert "Transformation" not in config.text(), "RViz 1 has no panel Transformation"
 
 
 def test_unknown_panels_are_reported_once_and_kept():

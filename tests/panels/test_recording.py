@@ -16,7 +16,7 @@ from linkwright.page.access import TOKEN_PARAMETER
 from linkwright.panels import recording as module
 from linkwright.panels.recording import RecordingFeature
 from tests.full_disk import full_disk, needs_limits
-from tests.panels.test_live_history import KEPT, filled
+from tests.panels.test_live_history import KEPT, publish_positions
 from tests.panels.test_time import config
 from tests.panels.test_timeline import open_recording
 from tests.recordings import needs_rosbags
@@ -210,7 +210,7 @@ async def test_recording_stops_when_little_disk_space_is_left(monkeypatch: pytes
         stopped = await wait_for_end(client)
         assert "less than 256 MB left" in stopped["problem"]
         with BagReader(state["path"]) as bag:
-            assert not bag.findings, "it has its end"
+            assert not bag.findings, "the recording is complete"
         await client.send("record_topics", topics=[])
         while not (refused := await client.until("recording_state"))["problem"].startswith("there is not enough space"):
             pass
@@ -254,7 +254,7 @@ async def test_history_and_part_of_history_are_saved():
     async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         await client.until("recording_state")
         world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
-        between = await filled(world)
+        between = await publish_positions(world)
         (whole,) = (await saved(client))["files"]
         with BagReader(whole["path"]) as bag:
             assert len(list(bag.messages([TF]))) == 5
@@ -263,7 +263,7 @@ async def test_history_and_part_of_history_are_saved():
         with BagReader(part["path"]) as bag:
             stamps = [stamp / 1e9 for _, stamp, _ in bag.messages()]
             assert between[1] - 1e-6 <= stamps[0] <= stamps[-1] <= between[3]
-            assert len(list(bag.messages(["/tf_static"]))) == 1, "the static transforms from before are in it"
+            assert len(list(bag.messages(["/tf_static"]))) == 1, "earlier static transforms are included"
             later = [stamp for _, stamp, _ in bag.messages([TF]) if stamp / 1e9 > between[1] + 1e-6]
             assert len(later) == 2
         nothing = await saved(client, 1.0, 2.0)

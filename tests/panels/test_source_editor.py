@@ -30,7 +30,7 @@ def file(tmp_path: Path) -> Path:
     return path
 
 
-def real(path: Path) -> str:
+def real_path(path: Path) -> str:
     return os.path.realpath(path)
 
 
@@ -152,7 +152,7 @@ async def test_workspace_can_be_edited_without_description(tmp_path: Path) -> No
     async with open_world() as world, page(world.viewer) as client:
         world.viewer.add_feature(SourceEditorFeature).edit_workspace(tmp_path)
         answer = await ask(client, "open_editor", "editor_opened", file=str(tmp_path))
-        assert (answer["folder"], answer["refusal_reason"]) == (real(tmp_path), "")
+        assert (answer["folder"], answer["refusal_reason"]) == (real_path(tmp_path), "")
         new = tmp_path / "src" / "new.py"
         created = await ask(client, "create_source_file", "source_file_written", number=1, path=str(new))
         assert (created["refusal"], new.read_text()) == (None, "")

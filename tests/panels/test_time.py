@@ -66,7 +66,7 @@ def test_exact_mode_shows_time_of_last_source_message():
     control.record_stamp("scan", 90)
     assert (control.lookup_ns(), control.sources) == (None, ["scan"])
     control.set(paused=False, mode="Exact", source="scan")
-    assert control.lookup_ns() is None  # until its next message
+    assert control.lookup_ns() is None  # until the next message of the source
     control.record_stamp("other", 80)
     control.record_stamp("scan", 95)
     assert (control.lookup_ns(), control.now_ns(), received) == (95, 95, [1])
@@ -110,7 +110,7 @@ async def test_pause_stops_frames_and_messages_for_all_pages():
         points.publish(point(0.25, time.time()))
         await world.settle()
         drained = await first.drain()
-        assert all(isinstance(message, dict) for message in drained)  # neither transforms nor data
+        assert all(isinstance(message, dict) for message in drained)  # no transforms and no data
         async with page(world.viewer) as late:
             assert (await late.opened())["time_state"]["paused"] is True
             await arrived(late, "tip", 1.0)
@@ -173,7 +173,7 @@ async def test_exact_synchronization_shows_frames_at_message_times():
         points.publish(point(0.0, (stamps[0] + stamps[1]) / 2))
         await world.settle()
         await client.drain()
-        world.move_arm(x=2.0)  # the newest, yet the frame is shown where it was half way
+        world.move_arm(x=2.0)  # the frame is shown between the earlier poses, not at this newest one
         points.publish(point(0.0, (stamps[0] + stamps[1]) / 2))
         await client.drain()
         frames = [message for message in client.messages if not isinstance(message, dict) and hasattr(message, "poses")]
@@ -232,7 +232,7 @@ async def test_simulated_time_is_followed_and_resets_when_jumping_back():
             clocks.publish(message)
             await world.settle()
             clock = await client.until("clock", ros=float(seconds), running=False)
-            assert clock["ros_start"] == 50  # not the zero from before anybody told the time
+            assert clock["ros_start"] == 50  # not zero, the time before the first /clock
         message.clock.sec = 10
         await client.drain()
         clocks.publish(message)

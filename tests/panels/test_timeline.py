@@ -22,7 +22,7 @@ SECOND = 1_000_000_000
 
 def recorded(folder: Path) -> Path:
     """Record ten seconds: a point each second, and a frame with x = the seconds since the start."""
-    pytest.importorskip("rosbags", reason="there is no wheel for Python 3.15")
+    pytest.importorskip("rosbags", reason="rosbags has no wheel for Python 3.15")
     path = folder / "drive"
     with BagWriter(path) as writer:
         writer.add_topic("/p", POINT, [DEFAULT_QOS])
@@ -110,7 +110,7 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
 
 @skipping
 async def test_topics_of_unknown_type_are_reported(tmp_path):
-    # What the recording carries for the type that nobody has is of no use either.
+    # The recording's definition of the unknown type is invalid too.
     async with open_recording(tmp_path, Point="Paint", float64="flaot64") as world, page(world.viewer) as client:
         message = await client.until("playhead", playing=True)
         assert message["problem"] == (

@@ -54,7 +54,7 @@ def default_view(cls: str = ORBIT) -> View:
 
 
 def test_negative_scale_is_kept():
-    """RViz leads to one when its right button is dragged far."""
+    """A long drag with the right button in RViz makes the scale negative."""
     config = config_of("{Class: rviz/TopDownOrtho, Scale: -88.9}")
     assert config.views.current.values["Scale"] == -88.9
     assert config.warnings == []

@@ -51,7 +51,7 @@ def image(text: str, view: str = "front", size: tuple[int, int] = (120, 90), **s
 
 
 def mostly(pixel: np.ndarray) -> str:
-    """Return the channel that is by far the strongest, or ``gray``."""
+    """Return the channel that is by far the strongest, or ``gray`` if there is none."""
     red, green, blue = (int(value) for value in pixel[:3])
     for name, value, others in (
         ("red", red, (green, blue)),

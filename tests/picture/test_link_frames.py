@@ -1,4 +1,4 @@
-"""Frames of links, compared with those of the kinematics."""
+"""Frames of links, compared with the frames from the room kinematics."""
 
 from __future__ import annotations
 

@@ -15,8 +15,8 @@ BOX = '<box size="1 1 1"/>'
 ONE = urdf(link("base", BOX, RED))
 
 
-def two(front: str, back: str) -> str:
-    """Two boxes, one before the other along x."""
+def two_boxes(front: str, back: str) -> str:
+    """Return two boxes, one in front of the other along x."""
     return urdf(link("base", BOX, front, "1 0 0"), link("other", BOX, back, "-1 0 0"), joint("j", "base", "other"))
 
 
@@ -29,8 +29,8 @@ def test_red_box_is_drawn_on_gray_background() -> None:
 
 
 def test_nearer_box_hides_other_from_each_side() -> None:
-    assert mostly(image(two(RED, BLUE), "front")[45, 60]) == "red"
-    back = render(scene(two(RED, BLUE)), View(180.0, 0.0), (120, 90))
+    assert mostly(image(two_boxes(RED, BLUE), "front")[45, 60]) == "red"
+    back = render(scene(two_boxes(RED, BLUE)), View(180.0, 0.0), (120, 90))
     assert mostly(back[45, 60]) == "blue"
 
 
@@ -40,7 +40,7 @@ def test_link_order_does_not_affect_visibility() -> None:
 
 
 def test_coplanar_surfaces_do_not_flicker() -> None:
-    """The same face twice, as two meshes with their own rounding: the first one is visible everywhere."""
+    """Two meshes contain the same face with different rounding. The first mesh is visible everywhere."""
     text = urdf(
         link("base", BOX, RED, rpy="0.3 0.2 0.4"),
         link("other", BOX, BLUE, rpy="0.3 0.2 0.4"),
@@ -67,7 +67,7 @@ def test_left_and_up_match_rep_103() -> None:
         joint("b", "base", "up"),
     )
     front = image(text)
-    # Who stands before the robot sees its left side on the right.
+    # A viewer in front of the robot sees the robot's left side on the right.
     assert mostly(front[68, 94]) == "green"
     assert mostly(front[22, 26]) == "blue" or mostly(front[22, 35]) == "blue"
     top = image(text, "top")
@@ -109,12 +109,12 @@ def test_background_can_be_transparent() -> None:
 
 
 def test_transparent_material_shows_surface_behind() -> None:
-    glass = two("0.9 0.1 0.1 0.4", BLUE)
+    glass = two_boxes("0.9 0.1 0.1 0.4", BLUE)
     red, _, blue, alpha = (int(value) for value in image(glass)[45, 60])
     assert red > 80
     assert blue > 80
     assert alpha == 255
-    assert mostly(image(two("0.9 0.1 0.1 0", BLUE))[45, 60]) == "blue"
+    assert mostly(image(two_boxes("0.9 0.1 0.1 0", BLUE))[45, 60]) == "blue"
 
 
 def test_ground_has_shadow_except_in_side_view() -> None:
@@ -133,7 +133,7 @@ def test_box_edges_are_drawn_dark() -> None:
 
 
 def test_outline_is_visible_behind_other_links() -> None:
-    text = two(RED, BLUE)
+    text = two_boxes(RED, BLUE)
     shown = render(scene(text, outlined={"other": OUTLINE_COLOR}), VIEWS["iso"], (240, 180))
     plain = render(scene(text), VIEWS["iso"], (240, 180))
     orange = np.abs(shown[:, :, :3].astype(int) - [round(value * 255) for value in OUTLINE_COLOR]).max(axis=2) < 6
@@ -170,7 +170,7 @@ def test_labels_are_dark_text_on_light_background(labels: str) -> None:
 
 
 def test_large_image_is_identical_when_rendered_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
-    text = two(RED, "0.1 0.1 0.9 0.5")
+    text = two_boxes(RED, "0.1 0.1 0.9 0.5")
     whole = image(text, "iso", (160, 120), grid=True)
     monkeypatch.setattr("linkwright.picture.rendering._BAND_SAMPLES", 20_000)
     assert np.abs(image(text, "iso", (160, 120), grid=True).astype(int) - whole).max() <= 1

@@ -1,6 +1,6 @@
-"""The same pixels on every machine: digests, with the processor's features switched off in other processes.
+"""The same pixels on every machine: digests of images, also in processes that disable features of the processor.
 
-After an intended change of the pixels, the digests are those that the failing tests print.
+After an intended change of the pixels, copy the digests that the failing tests print.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def test_pixels_match_recorded_digests() -> None:
 
 
 def switchable() -> list[str]:
-    """Return the features of this processor that numpy can be told not to use."""
+    """Return the features of this processor that numpy can disable."""
     from numpy._core import _multiarray_umath as core  # type: ignore[attr-defined]
 
     return [name for name in core.__cpu_dispatch__ if core.__cpu_features__.get(name)]

@@ -8,14 +8,14 @@ from linkwright.geometry.surfaces import box, cylinder, sphere
 from linkwright.picture.smoothing import smooth_mesh
 
 
-def soup(positions: np.ndarray, indices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def separate_triangles(positions: np.ndarray, indices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return triangles that share no corners, as in STL."""
     return positions[indices], np.arange(len(indices)).reshape(-1, 3)
 
 
 def test_sphere_of_separate_triangles_has_exact_smooth_normals() -> None:
     shape = sphere(2.0, 48)
-    points, faces = soup(shape.positions, shape.indices)
+    points, faces = separate_triangles(shape.positions, shape.indices)
     mesh = smooth_mesh(points, faces)
     assert len(mesh.sources) < len(points) / 4
     np.testing.assert_allclose(mesh.normals, points[mesh.sources] / 2.0, atol=2e-3)
@@ -23,13 +23,13 @@ def test_sphere_of_separate_triangles_has_exact_smooth_normals() -> None:
 
 def test_box_edges_are_sharp() -> None:
     shape = box((1.0, 2.0, 3.0))
-    mesh = smooth_mesh(*soup(shape.positions, shape.indices))
+    mesh = smooth_mesh(*separate_triangles(shape.positions, shape.indices))
     assert set(np.abs(mesh.normals).max(axis=1)) == {1.0}
 
 
 def test_cylinder_is_smooth_around_and_sharp_at_caps() -> None:
     shape = cylinder(1.0, 1.0, 24)
-    points, faces = soup(shape.positions, shape.indices)
+    points, faces = separate_triangles(shape.positions, shape.indices)
     mesh = smooth_mesh(points, faces)
     placed = points[mesh.sources]
     is_side = np.abs(mesh.normals[:, 2]) < 0.5

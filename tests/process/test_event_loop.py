@@ -13,7 +13,7 @@ from linkwright.process.event_loop import run_coroutine
 
 def interrupt() -> None:
     os.kill(os.getpid(), signal.SIGINT)
-    for _ in range(1000):  # what Python may raise anywhere, it raises here
+    for _ in range(1000):  # Python raises KeyboardInterrupt here at the latest
         pass
 
 
@@ -52,7 +52,7 @@ def test_second_ctrl_c_raises_immediately() -> None:
             await asyncio.sleep(60)
         except asyncio.CancelledError:
             interrupt()
-            pytest.fail("the second one was not raised")
+            pytest.fail("the second interrupt was not raised")
 
     with pytest.raises(KeyboardInterrupt):
         run_coroutine(stubborn, lambda: None)
@@ -60,7 +60,7 @@ def test_second_ctrl_c_raises_immediately() -> None:
 
 def test_ctrl_c_before_coroutine_starts_is_raised() -> None:
     async def nothing() -> None:
-        pytest.fail("it must not begin")
+        pytest.fail("the coroutine must not start")
 
     with pytest.raises(KeyboardInterrupt):
         run_coroutine(nothing, interrupt)

@@ -21,7 +21,7 @@ def test_patient_clock_counts_sleep():
     assert 0.0 < seconds <= time.monotonic() - begin
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="the waiting of processes is that of Linux")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports how long a process waits")
 def test_patient_clock_excludes_waiting_for_processor():
     processor = str(min(os.sched_getaffinity(0)))
     processes = [subprocess.Popen([sys.executable, "-c", BUSY, processor]) for _ in range(4)]

@@ -1,7 +1,7 @@
-"""Inputs that the fuzzers found, or that came up while hunting: whatever was wrong with them stays mended.
+"""Inputs of fixed defects, which the fuzzers or the search for defects found.
 
-Each file of ``inputs/`` is named ``KIND--what-was-wrong.ending``; the kind says how it is read, and what must hold is
-what the fuzzers check (see ``fuzz/targets.py``): no error but ours, and an output that can be read again.
+Each file of ``inputs/`` is named ``KIND--what-was-wrong.ending``, and the kind selects its reader. The checks are those
+of the fuzzers (see ``fuzz/targets.py``): only Linkwright's errors are raised, and the output can be read again.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     if not dds.is_available():
         for item in items:
             if Path(__file__).parent in item.path.parents:
-                item.add_marker(pytest.mark.skip(reason="there is no cyclonedds here"))
+                item.add_marker(pytest.mark.skip(reason="cyclonedds is not installed"))
 
 
 @pytest.fixture

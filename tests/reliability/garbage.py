@@ -1,8 +1,8 @@
-"""Writes bytes that are no messages to DDS topics: ``python -m tests.reliability.garbage DOMAIN``.
+"""Write invalid messages to DDS topics: ``python -m tests.reliability.garbage DOMAIN``.
 
-What is written: to a topic of strings, to the requests of a service, to ``ros_discovery_info``, and to the UDP ports
-themselves. Cyclone refuses much by itself; the rest is texts that are no UTF-8, and names that no node can have. In the
-end comes a well-formed message, so that whoever listens can be seen to go on.
+The bytes go to a topic of strings, to the requests of a service, to ``ros_discovery_info``, and to the UDP ports.
+Cyclone rejects many of them by itself. The others are texts with invalid UTF-8, and impossible names of nodes. A valid
+message follows, so that a test sees whether a receiver still works.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> 
 
 
 def bodies(lottery: random.Random) -> list[bytes]:
-    """Return bytes that are hardly a message, each with an encapsulation header that Cyclone accepts."""
+    """Return bytes that are rarely a valid message, each with an encapsulation header that Cyclone accepts."""
     packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
     packets += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
     packets += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
@@ -97,14 +97,14 @@ def main() -> None:
     for name, data_writer in writers.items():
         written = 0
         for body in bodies(lottery) + announcements(participant.guid.bytes):
-            with suppress(DDSException):  # Cyclone refuses some by itself
+            with suppress(DDSException):  # Cyclone rejects some by itself
                 data_writer.write(data_writer.data_type(body))
                 written += 1
         print("written", name, written, flush=True)
     time.sleep(0.5)
     writers["rt/words"].write(string(HEADER + text("fine")))
     print("last", flush=True)
-    while not Path("leave").exists():  # who hears the last words has the time to
+    while not Path("leave").exists():  # gives receivers the time to read the last message
         time.sleep(0.01)
     print("done", flush=True)
     del domain

@@ -16,7 +16,7 @@ from pathlib import Path
 import psutil
 
 from linkwright.standins.process import environment
-from tests.begun import BEGUN, telling
+from tests.begun import BEGUN, command_that_reports
 from tests.waiting import SECONDS, wait_until
 
 LINKWRIGHT = str(Path(sys.executable).with_name("linkwright"))
@@ -85,11 +85,11 @@ class Running:
         return int(rows[-1][1]) if rows else -1
 
     def wait_for(self, text: str, seconds: float = SECONDS, times: int = 1) -> None:
-        """Wait until a text has come in so many lines."""
+        """Wait until a number of lines contain a text."""
         wait_until(lambda: self.count(text) >= times, seconds, lambda: f"'{text}' in\n{self.text}")
 
     def interrupt(self) -> int:
-        """Ctrl-C; the exit status."""
+        """Interrupt the process as Ctrl-C does, and return its exit status."""
         with suppress(ProcessLookupError):
             self.process.send_signal(signal.SIGINT)
         return self.wait()
@@ -100,7 +100,7 @@ class Running:
         self.process.wait()
 
     def wait(self, seconds: float = SECONDS) -> int:
-        """Wait for the end; the exit status."""
+        """Wait for the end of the process, and return its exit status."""
         status = self.process.wait(seconds)
         self._reader.join(60.0)
         return status
@@ -134,7 +134,7 @@ def _is_marked(process: psutil.Process, mark: str) -> bool:
 
 
 class Machine:
-    """Starts processes that meet in one domain, in a folder of the test's own."""
+    """Starts processes in a common domain, and in a folder that only the test uses."""
 
     def __init__(self, folder: Path, domain: int) -> None:
         self.folder = folder
@@ -146,15 +146,15 @@ class Machine:
         }
         self._started: list[Running] = []
         self.before: tuple[str, ...] = ()
-        """The start of command lines, such as a shell that prepares something and becomes the command."""
+        """The words before each command, such as a shell that executes the command after a preparation."""
 
     def command(self, *words: object, **variables: str) -> Running:
         """Start ``linkwright WORDS``."""
         return self._start([LINKWRIGHT, *map(str, words)], variables)
 
-    def begun(self, *words: object, module: str = "linkwright") -> Running:
-        """Start ``python -m MODULE WORDS`` and wait until Ctrl-C is its own to take care of."""
-        running = self._start(telling(module, *map(str, words)), {})
+    def start_handling_interrupts(self, *words: object, module: str = "linkwright") -> Running:
+        """Start ``python -m MODULE WORDS``, and wait until it handles Ctrl-C."""
+        running = self._start(command_that_reports(module, *map(str, words)), {})
         running.wait_for(BEGUN)
         running.lines.remove(f"{BEGUN}\n")
         return running

@@ -1,4 +1,4 @@
-"""Programs that a script starts with ``&``, which have SIGINT ignored: ``kill -INT`` ends them, as it ends ROS's."""
+"""Programs that a script starts with ``&`` inherit an ignored SIGINT; ``kill -INT`` ends them, as it ends ROS's."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.domains import own_domain
 from tests.reliability.running import Machine, Running, launch_file, program
 from tests.waiting import wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="what a process does with signals is read in /proc")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the signal handlers of processes are read in /proc")
 
 SPEAKING = """
 class Program(Node):
@@ -51,8 +51,8 @@ def catches_interrupts(process: int) -> bool:
     return bool(int(caught.split()[1], 16) & 1 << (signal.SIGINT - 1))
 
 
-def ends_by_interrupt(running: Running, text: str) -> int:
-    """Wait until it runs, interrupt it, and return its exit status."""
+def interrupt_when_ready(running: Running, text: str) -> int:
+    """Wait until a process handles SIGINT and has printed a text; interrupt it, and return its exit status."""
     wait_until(lambda: catches_interrupts(running.process.pid), what=lambda: running.text)
     if text:
         running.wait_for(text)
@@ -71,17 +71,17 @@ def test_background_command_ends_on_sigint(background: Machine, name: str) -> No
                 bag.write("/chatter", second * 10**9, serialize(String(data="said")))
     domains = {"domain": own_domain(), "other": own_domain(1)}
     running = background.command(*(word.format_map(domains) for word in words))
-    assert ends_by_interrupt(running, text) in (0, 130), running.text
+    assert interrupt_when_ready(running, text) in (0, 130), running.text
     assert "Traceback" not in running.text
 
 
 def test_background_user_node_ends_on_sigint(background: Machine) -> None:
     running = background.program(SPEAKING)
-    assert ends_by_interrupt(running, "speaks") == 0, running.text
+    assert interrupt_when_ready(running, "speaks") == 0, running.text
 
 
 def test_process_in_background_launch_can_be_interrupted_alone(background: Machine) -> None:
-    """It starts as in a terminal, with the system's default for SIGINT, however the launch was started."""
+    """The process has the system's default for SIGINT, as in a terminal, however the launch was started."""
     path = background.write("speaker.py", program(SPEAKING))
     action = f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], output='screen')"
     running = background.launch(background.write("a.launch.py", launch_file(action)))

@@ -1,4 +1,4 @@
-"""One busy or slow part does not take the others with it."""
+"""A busy or slow part does not disturb the others."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_flooded_topic_does_not_starve_another(machine: Machine) -> None:
     numbers = [int(line.split()[1]) for line in tuple(listener.lines) if line.startswith("calm ")][before:]
     assert numbers == list(range(numbers[0], numbers[-1] + 1))
     flooded = listener.last_number("flooded")
-    wait_until(lambda: listener.last_number("flooded") > flooded)  # it goes on
+    wait_until(lambda: listener.last_number("flooded") > flooded)  # the flood continues
     statuses = listener.interrupt(), flood.interrupt()
     assert statuses == (0, 0), f"{listener.text[-2000:]}\n{flood.text}"
 
@@ -112,7 +112,7 @@ def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
 
 @pytest.mark.parametrize("size", [10, 20_000])
 def test_reliable_messages_are_not_lost_with_slow_subscriber(machine: Machine, size: int) -> None:
-    """An unlimited queue: the flood ends long before the subscriber has read it."""
+    """The queue is unlimited, and the flood ends long before the subscriber has read all messages."""
     listener = machine.program(
         """
         class Program(Node):
@@ -218,7 +218,7 @@ def test_service_answers_while_process_is_flooded(machine: Machine) -> None:
 
 
 def test_stopped_process_does_not_block_publisher(machine: Machine) -> None:
-    """Stopped as by a debugger: the publisher continues, and the resumed process receives new messages."""
+    """While a process is stopped as by a debugger, the publisher continues. The resumed process gets new messages."""
     talker = machine.program(
         """
         class Program(Node):

@@ -1,6 +1,6 @@
-"""Navigation of another process in the place of ours, as real nav2 would be.
+"""Navigation in another process instead of ours, as with real nav2.
 
-It has of the simulation what it needs, over the wire, and serves who asks for nav2 by its topics and actions.
+It receives the simulation's data over the wire, and serves clients of nav2's topics and actions.
 """
 
 from __future__ import annotations

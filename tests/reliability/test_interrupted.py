@@ -16,7 +16,7 @@ from contextlib import suppress
 import psutil
 import pytest
 
-from tests.begun import BEGUN, telling
+from tests.begun import BEGUN, command_that_reports
 from tests.reliability.running import MARK, Machine, launch_file, program
 from tests.waiting import SECONDS, wait_until
 
@@ -61,7 +61,7 @@ def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Mach
         ),
     )
     for delay in sorted(random.Random(11).uniform(0.0, 1.5) for _ in range(20)):
-        running = machine.begun("launch", launch, "--no-open")
+        running = machine.start_handling_interrupts("launch", launch, "--no-open")
         time.sleep(delay)
         status = running.interrupt()
         where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
@@ -73,14 +73,14 @@ def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Mach
 @pytest.mark.slow
 @pytest.mark.parametrize("delay", [0.1, 0.2, 0.35, 0.6, 1.2])
 def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) -> None:
-    """A launch and a recording, which reads keys, each on its own terminal, on which Ctrl-C is typed."""
+    """Type Ctrl-C in the terminal of a launch, and in the terminal of a recording, which reads keys."""
     path = machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
     bag = machine.folder / f"bag_{delay}"
     for words in (["launch", str(path)], ["bag", "record", "-a", "-o", str(bag)]):
         main, terminal = pty.openpty()
         before = termios.tcgetattr(terminal)
         process = subprocess.Popen(
-            [sys.executable, "-c", OWN_TERMINAL, *telling("linkwright", *words)],
+            [sys.executable, "-c", OWN_TERMINAL, *command_that_reports("linkwright", *words)],
             stdin=terminal,
             stdout=terminal,
             stderr=terminal,
@@ -92,7 +92,7 @@ def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) ->
         reader = threading.Thread(target=_drain, args=(main, chunks), daemon=True)
         reader.start()
         try:
-            # Until it is in the foreground, nobody gets the Ctrl-C.
+            # Before the process is in the foreground, no process receives the Ctrl-C.
             wait_until(lambda main=main, process=process: os.tcgetpgrp(main) == process.pid)
             wait_until(lambda heard=chunks: BEGUN.encode() in b"".join(heard))
             time.sleep(delay)
@@ -118,7 +118,7 @@ FIRST_MODULES = {
     "linkwright.process",
     "linkwright.process.interruption",
 }
-"""What is loaded before Ctrl-C is taken care of: about a millisecond."""
+"""The modules that are loaded before Ctrl-C is handled, in about a millisecond."""
 
 WATCHED = """
 import runpy, sys
@@ -151,10 +151,10 @@ def test_few_modules_are_imported_before_sigint_handler(machine: Machine, words:
 def test_interrupt_during_imports_prints_no_traceback(machine: Machine, words: tuple[str, ...]) -> None:
     machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
     for delay in (0.0, 0.01, 0.025, 0.04, 0.06, 0.09, 0.13, 0.18, 0.25):
-        running = machine.begun(*words[1:], module=words[0])
+        running = machine.start_handling_interrupts(*words[1:], module=words[0])
         time.sleep(delay)
         status = running.interrupt()
-        # A node that runs ends with 0, as all nodes do.
+        # A running node ends with status 0, as all nodes do.
         assert status in ((0, 130) if "talker" in words else (130,)), running.text
         assert not traceback_in(running.text), running.text
 
@@ -168,7 +168,7 @@ def _drain(main: int, chunks: list[bytes]) -> None:
 @pytest.mark.parametrize(
     ("words", "shown"),
     [
-        (("topic", "echo", "/chatter", "std_msgs/msg/Int32"), "data:"),  # without a type it ends if nobody talks yet
+        (("topic", "echo", "/chatter", "std_msgs/msg/Int32"), "data:"),  # without a type, it needs a publisher
         (("topic", "hz", "/chatter"), "average rate"),
         (("topic", "bw", "/chatter"), "from"),
         (("topic", "pub", "/words", "std_msgs/msg/String", "{data: hi}"), "publishing #"),
@@ -192,7 +192,8 @@ def test_running_command_ends_on_interrupt(machine: Machine, words: tuple[str, .
 def test_topic_echo_interrupted_during_startup_exits_with_130(machine: Machine) -> None:
     machine.program(TALKER)
     for delay in sorted(random.Random(5).uniform(0.0, 0.9) for _ in range(10)):
-        running = machine.begun("topic", "echo", "/chatter", "std_msgs/msg/Int32")  # waits for a slow talker
+        # With a type, the command waits for a slow talker.
+        running = machine.start_handling_interrupts("topic", "echo", "/chatter", "std_msgs/msg/Int32")
         time.sleep(delay)
         status = running.interrupt()
         where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
@@ -207,14 +208,14 @@ def test_interrupted_recording_is_complete(machine: Machine) -> None:
     wait_until(lambda: sum(path.stat().st_size for path in bag.glob("*")) > 100 if bag.is_dir() else False)
     recorder.wait_for("Subscribed to topic '/chatter'")
     listener = machine.program(LISTENER)
-    listener.wait_for("heard", times=60)  # which the recorder hears too
+    listener.wait_for("heard", times=60)  # the recorder receives these messages too
     status = recorder.interrupt()
     assert status in (0, 130), recorder.text
     info = machine.verb("bag", "info", bag)
     match = re.search(r"Topic: /chatter .*Count: (\d+)", info)
     assert match, info
     assert int(match[1]) >= 40, info
-    from rosbags.highlevel import AnyReader  # there is no wheel for Python 3.15, nor DDS
+    from rosbags.highlevel import AnyReader  # like DDS, it has no wheel for Python 3.15
     from rosbags.typesys import Stores, get_typestore
 
     with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:

@@ -11,11 +11,11 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.begun import BEGUN, telling
+from tests.begun import BEGUN, command_that_reports
 from tests.waiting import SECONDS, wait_until
 
 MOMENTS = (0.0, 0.5, 1.0)
-"""Of the work: seconds of the processor since the command began."""
+"""The times of the interrupts: seconds of processor time since the start of the command."""
 
 _PART = "".join(
     f'<part{number} a="${{n + {number}}}" b="${{n * {number}}}" c="${{[n, {number}]}}"/>' for number in range(400)
@@ -26,7 +26,7 @@ HARD = (
     + "".join(f'<xacro:many n="{number}"/>' for number in range(1000))
     + '<link name="base"/></robot>'
 )
-"""Within all bounds but that of time, which ends it after 20 s of the processor."""
+"""An expansion that only the time limit of 20 s of processor time ends."""
 ENDLESS = "def generate_launch_description():\n    while True:\n        sum(range(1000))\n"
 
 COMMANDS = [
@@ -48,7 +48,11 @@ def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> Non
     (tmp_path / "endless.launch.py").write_text(ENDLESS)
     for moment in MOMENTS:
         process = subprocess.Popen(
-            telling("linkwright", *words), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            command_that_reports("linkwright", *words),
+            cwd=tmp_path,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
         )
         try:
             assert process.stdout is not None

@@ -50,7 +50,7 @@ def test_killed_node_is_respawned_and_heard_again(machine: Machine) -> None:
         launch.wait_for("has died", times=round_number)
         launch.wait_for("process started with pid", times=round_number + 1)
         listener.wait_for("heard", times=before + 6)
-        # The one that was killed is not listed though its lease of five seconds still runs.
+        # The killed node is not listed, although its lease of five seconds has not expired.
         assert machine.verb("node", "list").split() == ["/listener", "/talker"]
     assert launch.interrupt() == 130
     wait_until(lambda: not launch.left_behind())

@@ -1,4 +1,4 @@
-"""A robot driven by another process: it stops when that is killed, and continues when that has left."""
+"""A robot that another process drives: it stops if the process is killed, and continues if the process leaves."""
 
 from __future__ import annotations
 

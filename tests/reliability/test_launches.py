@@ -105,7 +105,7 @@ def test_late_subscriber_receives_description_and_static_transforms(machine: Mac
 
 
 def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
-    """LINKWRIGHT_DDS=0: the process works, has no socket for others, and discovers no nodes."""
+    """With LINKWRIGHT_DDS=0, a process works, has no socket for other processes, and discovers no nodes."""
     path = machine.write(
         "a.launch.py",
         launch_file(

@@ -1,4 +1,4 @@
-"""Bytes on the wire that are no messages."""
+"""Bytes on the wire that are not messages."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def test_bag_record_is_complete_after_any_signal(machine: Machine, storage: str,
     wait_until(lambda: sum(path.stat().st_size for path in folder.iterdir()) > 1_000_000, what=lambda: recording.text)
     for stop_signal in signals:
         recording.process.send_signal(stop_signal)
-        time.sleep(0.35)  # later than what counts as one keypress
+        time.sleep(0.35)  # signals within a shorter time count as one keypress
         if recording.process.poll() is not None:
             break
     recording.wait()

@@ -18,11 +18,11 @@ INSTALLED_FOLDERS = ("launch", "meshes", "rviz", "urdf")
 
 @pytest.fixture(scope="module", params=["copied", "symlinked"])
 def workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a workspace with a copy of the package, built both ways."""
+    """Return a workspace with a copy of the package, built with or without symbolic links."""
     workspace = tmp_path_factory.mktemp("ros2_ws")
     source = workspace / "src" / PACKAGE.name
     shutil.copytree(PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-    # A file and a folder that setup.py has never heard of.
+    # A file and a folder that setup.py does not name.
     (source / "urdf" / "sensor" / "imu").mkdir()
     (source / "urdf" / "sensor" / "imu" / "imu_gazebo.xacro").write_text("<robot/>\n", encoding="utf-8")
     colcon_build(workspace, PACKAGE.name, *(["--symlink-install"] if request.param == "symlinked" else []))

@@ -26,7 +26,7 @@ pytest.importorskip("mujoco")
 ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
 NODES = ("drive_square", "follow_wall", "go_to_pose", "follow_line", "avoid_obstacles")
 RADIUS = 0.2
-"""mbot's, in m."""
+"""The radius of mbot in meters."""
 
 
 @pytest.fixture
@@ -72,8 +72,8 @@ def test_drive_square_closes_square(load: Any) -> None:
             if "the square is closed" in logged(test):
                 break
         measured = odometry.last.pose.pose.position
-        assert math.hypot(measured.x, measured.y) < 0.05, "as far as odometry can tell"
-        assert math.dist(place(test), (0.0, 0.0)) < 0.25, "in the world, where wheels slip"
+        assert math.hypot(measured.x, measured.y) < 0.05, "by odometry"
+        assert math.dist(place(test), (0.0, 0.0)) < 0.25, "in the world, because wheels slip"
         for corner, expected in zip(corners, [(1, 0), (1, 1), (0, 1)], strict=True):
             assert math.dist(corner, expected) < 0.25
         test.advance(1.0)
@@ -96,11 +96,11 @@ def test_follow_wall_goes_through_maze(load: Any) -> None:
             nearest.append(min(scans.last.ranges))
             beside.append(scans.last.ranges[90])  # 90 degrees to the right
         assert way > 8.0
-        assert min(nearest) > RADIUS + 0.1, "it touches nothing"
+        assert min(nearest) > RADIUS + 0.1, "mbot touches nothing"
         near = [distance for distance in beside if distance < 0.9]
-        assert len(near) > 40, "there is nearly always a wall on its right"
+        assert len(near) > 40, "there is a wall on the right most of the time"
         assert sorted(near)[len(near) // 2] == pytest.approx(0.5, abs=0.1)
-        assert math.dist(place(test), (0.0, 0.0)) > 4.0, "it gets through the maze"
+        assert math.dist(place(test), (0.0, 0.0)) > 4.0, "mbot gets through the maze"
 
 
 def test_follow_wall_works_on_left_side(load: Any) -> None:
@@ -150,7 +150,7 @@ def test_follow_line_follows_line(load: Any) -> None:
         for _ in range(18):
             test.advance(1.0)
             way, before = way + math.dist(before, place(test)), place(test)
-            assert min(math.dist(place(test), piece) for piece in line) < 0.15, "mbot stands on the line"
+            assert min(math.dist(place(test), piece) for piece in line) < 0.15, "mbot is on the line"
         assert way > 2.5
 
 
@@ -175,7 +175,7 @@ def test_avoid_obstacles_stops_before_box(load: Any) -> None:
         load("avoid_obstacles").AvoidObstacles()
         scans, odometry = test.record("/scan"), test.record("/odom")
         test.advance(20.0)
-        assert place(test)[0] > 2.0, "the wall of boxes is 3.6 m away"
+        assert place(test)[0] > 2.0, "mbot drives toward the boxes, which are 3.6 m away"
         ahead = min(distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) <= 40)
         assert 0.35 < ahead < 0.6
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3

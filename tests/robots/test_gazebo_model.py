@@ -109,8 +109,8 @@ def test_optical_frames_look_along_sensor_x_axis() -> None:
     frames = tree.forward({joint: 0.0 for joint in robot.joints if "wheel" in joint or "caster" in joint})
     for sensor in ("camera", "kinect"):
         rotation = frames[tree.link_index(f"{sensor}_optical_frame")][:3, :3]
-        assert rotation[:, 2] == pytest.approx([1, 0, 0])  # z into the picture
-        assert rotation[:, 0] == pytest.approx([0, -1, 0])  # x to the right
+        assert rotation[:, 2] == pytest.approx([1, 0, 0])  # z points into the image
+        assert rotation[:, 0] == pytest.approx([0, -1, 0])  # x points to the right
 
 
 def height(robot: Robot, link: str) -> float:

@@ -23,7 +23,7 @@ MODELS = sorted((GAZEBO_PACKAGE / "models").iterdir())
 LAUNCH_FILES = sorted((GAZEBO_PACKAGE / "launch").glob("*.launch.py"))
 ROBOT_HEIGHT = 0.4
 START_RADIUS = 0.3
-"""What has to be free around the origin, in meters; mbot's own radius is 0.2."""
+"""The radius of the free area around the origin in meters; mbot's radius is 0.2."""
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def test_worlds_have_no_findings(path: Path, capsys: pytest.CaptureFixture[str])
 @pytest.mark.parametrize("path", WORLDS, ids=lambda path: path.stem)
 def test_robot_start_area_is_free(path: Path) -> None:
     for name, x, y, yaw, size in solid_boxes(path):
-        # The origin in the box's own axes, and how far it is from the box.
+        # The origin in the axes of the box, and its distance from the box.
         along, across = (-x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) - y * math.cos(yaw))
         distance = math.hypot(max(abs(along) - size[0] / 2, 0), max(abs(across) - size[1] / 2, 0))
         assert distance > START_RADIUS, name

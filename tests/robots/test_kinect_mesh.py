@@ -123,7 +123,7 @@ def test_mesh_has_expected_size_and_position(geometries: dict[str, Geometry]) ->
     upper = np.max([geometry.mesh.bounds[1] for geometry in geometries.values()], axis=0)
     assert upper - lower == pytest.approx([0.28, 0.07, 0.046], abs=1e-6)
     assert lower[2] == pytest.approx(-0.034)
-    # Left and right alike, front and back alike.
+    # The mesh is symmetric: left and right, front and back.
     assert (upper + lower)[:2] == pytest.approx([0.0, 0.0], abs=1e-6)
     assert geometries["foot"].mesh.bounds[0][2] == pytest.approx(lower[2])
 
@@ -132,4 +132,4 @@ def test_lenses_face_negative_y(geometries: dict[str, Geometry]) -> None:
     body = geometries["body"].mesh.bounds
     for name in ("emitter", "color_lens", "depth_lens", "led"):
         bounds = geometries[name].mesh.bounds
-        assert bounds[0][1] < body[0][1] < bounds[1][1], "stands out of the body's front and begins inside it"
+        assert bounds[0][1] < body[0][1] < bounds[1][1], "the part protrudes from the front of the body"

@@ -1,4 +1,4 @@
-"""mbot's five models are the tutorial's robot: recorded facts, and the published files where they are at hand."""
+"""mbot's five models are the tutorial's robot: recorded facts, and the published files if they exist."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.urdf import Mesh, Robot, Visual
 from tests.places import PACKAGE, PUBLISHED
 
 TUTORIAL: dict[str, Any] = json.loads((Path(__file__).parent / "tutorial.json").read_text(encoding="utf-8"))
-"""What the models of the published tutorial say: joints and visuals in numbers, and the values of its .rviz file."""
+"""The published tutorial's models: numbers of joints and visuals, and the values of its .rviz file."""
 
 WHEELS_AND_CASTERS = ["base_link", "left_wheel_link", "right_wheel_link", "front_caster_link", "back_caster_link"]
 LINKS = {
@@ -125,7 +125,7 @@ def test_models_match_tutorial_facts(name: str) -> None:
     assert _facts(load_model(name)) == _approximately(TUTORIAL["models"][name])
 
 
-@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the tutorial's files are not beside this checkout")
+@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the published files of the tutorial are missing")
 @pytest.mark.parametrize("name", LINKS)
 def test_tutorial_facts_match_published_files(name: str) -> None:
     assert _facts(load(PUBLISHED / "urdf" / name)) == TUTORIAL["models"][name]

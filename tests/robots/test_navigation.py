@@ -35,7 +35,7 @@ GOALS = [
     (-1.7, 2.6, 0.0),
     (0.3, -0.5, 0.0),
 ]
-"""In all rooms, below the table and between the furniture."""
+"""Goals in all rooms, below the table, and between the furniture."""
 
 
 @pytest.mark.slow
@@ -60,7 +60,7 @@ def test_robot_passes_door_and_goal_is_canceled():
         after = house.place()
         assert math.dist(before, after) < 0.3
         house.advance_and_watch(1.0)
-        assert math.dist(after, house.place()) < 0.01, "it stands still"
+        assert math.dist(after, house.place()) < 0.01, "mbot stands still"
         assert house.touched == set()
 
 
@@ -75,7 +75,7 @@ def test_goal_in_wall_is_aborted_with_reason():
     with House() as house:
         assert house.go_to(-0.9, 2.4, seconds=20.0) == GoalStatus.ABORTED
         assert any("the goal (-0.90, 2.40) is" in text for text in house.logged())
-        assert math.dist(house.place(), (0.0, 0.0)) < 0.05, "it did not move"
+        assert math.dist(house.place(), (0.0, 0.0)) < 0.05, "mbot did not move"
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""The package's own papers: manifest, set-up, launch files and RViz configuration."""
+"""The files of the package: manifest, setup.py, launch files and RViz configuration."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_launch_files_declare_expected_arguments(name: str) -> None:
     defaults = {}
     for call in declared:
         values = {word.arg: word.value for word in call.keywords}
-        # The default's last string constant: the value itself, or the file's name at the end of a path.
+        # The last string constant of the default: the value, or the file name at the end of a path.
         strings = [node.value for node in ast.walk(values["default_value"]) if isinstance(node, ast.Constant)]
         defaults[ast.literal_eval(call.args[0])] = next(text for text in strings if text not in ("urdf", "rviz"))
         if ast.literal_eval(call.args[0]) == "gui":
@@ -102,7 +102,7 @@ def test_rviz_configuration_contains_tutorial_values(rviz: dict[str, Any]) -> No
     _assert_within(TUTORIAL["rviz"], rviz, "")
 
 
-@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the tutorial's files are not beside this checkout")
+@pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the published files of the tutorial are missing")
 def test_tutorial_values_match_published_file() -> None:
     assert yaml.safe_load((PUBLISHED / "rviz" / "urdf.rviz").read_text(encoding="utf-8")) == TUTORIAL["rviz"]
 

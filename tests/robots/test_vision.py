@@ -1,4 +1,4 @@
-"""The package of vision nodes: its launch files, its checks, and the node that follows a thing in a simulated world."""
+"""The package of vision nodes: its launch files, its checks, and the node that follows an object in a world."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ def test_follow_object_follows_moving_ball(follow_object: Any, tmp_path: Path) -
             assert 0.5 < test.distance() < 1.2
             robot_x, robot_y, _, _, _, *turn = test.robot_pose()
             bearing = math.atan2(y - robot_y, x - robot_x) - 2.0 * math.atan2(turn[0], turn[1])
-            assert math.cos(bearing) > math.cos(0.15), "it looks at the ball"
+            assert math.cos(bearing) > math.cos(0.15), "mbot faces the ball"
         test.detector.cancel()
         test.advance(1.0)
         speed = test.commands.last
-        assert (speed.linear.x, speed.angular.z) == (0.0, 0.0), "a detector that says nothing stops it"
+        assert (speed.linear.x, speed.angular.z) == (0.0, 0.0), "mbot stops without detections"
 
 
 def test_decision_tests_of_package_pass(follow_object: Any) -> None:

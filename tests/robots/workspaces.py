@@ -11,11 +11,11 @@ COLCON = Path(sys.executable).with_name("colcon")
 
 
 def colcon_build(workspace: Path, package: str, *options: str) -> None:
-    """Build one package of a workspace; the test fails with colcon's output where the build does."""
+    """Build a package of a workspace; if the build fails, the test fails with colcon's output."""
     environment = dict(os.environ)
     for name in ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "CMAKE_PREFIX_PATH", "PYTHONPATH"):
         environment.pop(name, None)
-    # Logs stay in the workspace, and no desktop is asked to show a notification.
+    # Logs stay in the workspace, and colcon sends no desktop notifications.
     environment |= {
         "COLCON_HOME": str(workspace / ".colcon"),
         "COLCON_EXTENSION_BLOCKLIST": "colcon_core.event_handler",

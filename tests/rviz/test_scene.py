@@ -74,7 +74,7 @@ def test_visual_colors_follow_materials():
         )
     )
     assert [shape.color for shape in links["base"].visuals] == [[0, 0, 1, 1], [1, 0, 0, 0.5], None, None]
-    assert [shape.color for shape in links["base"].collisions] == [[0, 0, 1, 1]]  # of the first visual, as in RViz
+    assert [shape.color for shape in links["base"].collisions] == [[0, 0, 1, 1]]  # the first visual's color, as in RViz
 
 
 def test_links_have_frame_joint_and_source_location():

@@ -11,7 +11,7 @@ from tests.places import REPOSITORY
 
 SAME = {"RGB", "RGB8", "RGBF32", "X", "XY", "XYZ", "XZ", "Y", "YZ", "Z", "compressed", "compressedDepth"}
 SAME |= {"costmap", "map", "raw", "theora"}
-"""What is called alike: axes, fields of messages, transports, and schemes of colors that ROS knows by these names."""
+"""Names that are not translated: axes, fields of messages, transports, and ROS's names of color schemes."""
 
 OFFERED = """
 import gc, importlib, json, pkgutil
@@ -24,7 +24,7 @@ for package in (displays, config):
 specs = [spec for spec in gc.get_objects() if isinstance(spec, PropertySpec) and spec.kind == "enum"]
 print(json.dumps([option for spec in specs for option in spec.options]))
 """
-"""Some rows are made by functions, and only the interpreter knows them all, where nothing is frozen."""
+"""Prints all choices. Functions create some of the rows, so the program searches the objects of a new interpreter."""
 
 
 def test_property_choices_match_chinese_value_names():

@@ -1,4 +1,4 @@
-"""From where a page looks at a world first."""
+"""The initial viewpoint of a page for a world."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_invalid_camera_pose_is_none(pose):
     ("inside", "is_robot"),
     [
         ("<link name='a'/>", False),
-        (TURNING, False),  # a door
+        (TURNING, False),  # a door, for instance
         (TURNING + JOINT.format("c"), True),
         ("<link name='a'/><plugin name='p' filename='libdrive.so'/>", True),
         ("<link name='a'><sensor name='s' type='imu'/></link>", True),

@@ -145,7 +145,7 @@ def test_document_is_read_into_objects():
 def test_written_document_reads_back():
     shed, _ = read(FULL)
     text = write(Document(write_element(SHED, shed)))
-    assert 'length="1"' not in text  # as by default
+    assert 'length="1"' not in text  # the default is not written
     again, words = read(text)
     assert words == []
     assert again.tools == shed.tools

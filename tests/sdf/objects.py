@@ -38,7 +38,7 @@ def poses(draw) -> Pose:
     if draw(st.booleans()):
         return Pose(xyz, draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)))
     x, y, z, w = normalized(*draw(QUATERNIONS))
-    quaternion = (x + 0.0, y + 0.0, z + 0.0, w + 0.0)  # -0 is written as 0, and turns pi into -pi
+    quaternion = (x + 0.0, y + 0.0, z + 0.0, w + 0.0)  # -0 is written as 0, which would change pi to -pi
     return Pose(xyz, rpy_from_quaternion(quaternion), quaternion)
 
 

@@ -38,7 +38,7 @@ NAMES = {
     tuple: "polyline",
 }
 
-pytestmark = pytest.mark.skipif(not ITEMS, reason="the collection of worlds is not beside the repository")
+pytestmark = pytest.mark.skipif(not ITEMS, reason="the collection of worlds is missing")
 
 
 def examine_item(item):

@@ -187,7 +187,7 @@ def test_collision_surface_and_gazebo_elements_are_merged():
     surface = "<surface><friction><ode><mu>0.5</mu><mu2>0.6</mu2></ode></friction></surface>"
     text = f'<gazebo reference="a"><collision>{surface}</collision><mu1>0.1</mu1></gazebo>'
     robot = robot_of(link("a", SHAPED) + text)
-    for _ in range(2):  # the robot's elements stay as they are
+    for _ in range(2):  # the conversion does not change the robot's elements
         friction = model_from_robot(robot, lump_fixed_joints=False).model.links[0].collisions[0].surface.friction
         assert friction is not None
         assert (friction.mu, friction.mu2) == (0.1, 0.6)
@@ -394,7 +394,7 @@ def test_corpus_robots_are_converted(entry, arguments, packages, facts):
     try:
         robot = examine(entry, arguments=arguments, packages=packages).robot
     except LinkwrightError:
-        return  # some only work with arguments, or are parts of others
+        return  # some need arguments, or are parts of other descriptions
     if robot is None:
         return
     for lump in (False, True):

@@ -309,7 +309,7 @@ def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
 
 @pytest.mark.parametrize("name", ["boxed", "box_steel", "old_box"])
 def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
-    """Gazebo has many models; a name that shares a word with a built-in one is one of those."""
+    """Gazebo has many models, so a name that shares a word with a built-in model may be correct."""
     write(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     finding = finder.file(f"model://{name}", tmp_path)
@@ -391,7 +391,7 @@ def test_file_uri_with_wrong_case_suggests_file(tmp_path):
 
 
 def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
-    """Thirty models, each including the next one twice, would be a thousand million."""
+    """If each of thirty models includes the next one twice, the world has a thousand million models."""
     monkeypatch.setattr("linkwright.sdf.includes._MAX_MODELS", 500)
     twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
     files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}

@@ -18,12 +18,12 @@ def places(inside: str, pose: str = "10 20 0 0 0 0") -> list[tuple[float, float,
     return [model.pose.pose.xyz for model in models_of(world(text).populations[0])]
 
 
-def spread(kind: str, extra: str = "") -> str:
+def distribution(kind: str, extra: str = "") -> str:
     return f"<distribution><type>{kind}</type>{extra}</distribution>"
 
 
 def test_grid_is_centered_on_pose():
-    grid = spread("grid", "<rows>2</rows><cols>3</cols><step>1 0.5 0</step>")
+    grid = distribution("grid", "<rows>2</rows><cols>3</cols><step>1 0.5 0</step>")
     assert places(grid) == [(x, y, 0) for y in (19.75, 20.25) for x in (9, 10, 11)]
 
 
@@ -36,31 +36,33 @@ def test_grid_is_centered_on_pose():
     ],
 )
 def test_row_starts_at_side_of_box(kind, expected):
-    assert places(BOX + spread(kind)) == expected
+    assert places(BOX + distribution(kind)) == expected
 
 
 @pytest.mark.parametrize("kind", ["random", "uniform"])
 def test_random_models_are_inside_box_and_reproducible(kind):
-    positions = places(BOX + spread(kind))
+    positions = places(BOX + distribution(kind))
     assert len(set(positions)) == 4
     assert all(8 <= x <= 12 and 19 <= y <= 21 and -0.25 <= z <= 0.25 for x, y, z in positions)
-    assert places(BOX + spread(kind)) == positions
+    assert places(BOX + distribution(kind)) == positions
 
 
 @pytest.mark.parametrize("kind", ["random", "uniform"])
 def test_random_models_are_inside_cylinder_above_base(kind):
     cylinder = "<cylinder><radius>2</radius><length>1</length></cylinder><model_count>50</model_count>"
-    positions = places(cylinder + spread(kind))
+    positions = places(cylinder + distribution(kind))
     assert len(set(positions)) == 50
     assert all(hypot(x - 10, y - 20) <= 2 and 0 <= z <= 1 for x, y, z in positions)
 
 
 def test_box_rotates_about_corner_like_gazebo():
-    (first, second, *_) = places(BOX + spread("linear-x"), f"0 0 0 0 0 {pi / 2}")
+    (first, second, *_) = places(BOX + distribution("linear-x"), f"0 0 0 0 0 {pi / 2}")
     assert (second[0] - first[0], second[1] - first[1]) == pytest.approx((0, 1))
 
 
-@pytest.mark.parametrize("inside", [spread("random"), f"{BOX}{spread('grid', '<rows>0</rows>')}", spread("linear-x")])
+@pytest.mark.parametrize(
+    "inside", [distribution("random"), f"{BOX}{distribution('grid', '<rows>0</rows>')}", distribution("linear-x")]
+)
 def test_population_without_distribution_is_empty(inside):
     assert places(inside) == []
 

@@ -31,7 +31,7 @@ from tests.sdf.worlds import model, world
 
 
 def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementRule]:
-    """Yield all rules below a rule, each once."""
+    """Return a rule and all rules below it by ID, each once."""
     if id(rule) not in seen:
         seen[id(rule)] = rule
         for child in rule.children:
@@ -44,7 +44,7 @@ MADE = [rule for rule in rules(SDF, {}).values() if is_dataclass(rule.make)]
 
 @pytest.mark.parametrize("rule", MADE, ids=[f"{rule.tag}{number}" for number, rule in enumerate(MADE)])
 def test_empty_element_has_class_defaults(rule: ElementRule):
-    """The defaults of the table, which are SDF's, and those of the classes are the same ones."""
+    """The table and the classes have the same defaults, which are SDF's."""
     element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
     element_object = reader_of(rule, NEWEST).read(element, element, SdfReport())
     own = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
@@ -364,7 +364,7 @@ def test_sdf_elements_without_effect_are_accepted():
 
 @given(st.text(alphabet="<>/=\"' sdfworlmk123.-", max_size=60), st.integers(0, 10**6))
 def test_random_worlds_are_read_without_exception(text, at):
-    """Pieces of a world with something else put in: a tree that is XML is read, whatever it says."""
+    """A random text is inserted into a world. If the result is XML, it is read without an exception."""
     whole = (
         '<sdf version="1.6"><world name="w"><model name="m"><pose>0 0 0 0 0 0</pose><link name="l"><visual name="v">'
         "<geometry><box><size>1 1 1</size></box></geometry></visual></link></model></world></sdf>"
@@ -386,7 +386,7 @@ def test_deeply_nested_models_are_rejected():
 
 
 def test_any_element_can_be_nested_in_any_other_without_exception():
-    """Each element of the table in each other one: nothing is raised, whatever stands where."""
+    """Each element of the table is nested in each other element."""
     tags = sorted({rule.tag for rule in rules(SDF, {}).values()})
     for rule in rules(SDF, {}).values():
         element = Element(rule.tag, {"name": "n"})

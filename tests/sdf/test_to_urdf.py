@@ -179,7 +179,7 @@ def test_urdf_survives_conversion_to_sdf_and_back():
     assert (list(saved_robot.links), list(saved_robot.joints)) == (list(converted.links), list(converted.joints))
 
 
-@pytest.mark.skipif(not SHARED.is_dir(), reason="needs the models beside the repository")
+@pytest.mark.skipif(not SHARED.is_dir(), reason="the collection of models is missing")
 def test_visuals_of_shared_models_keep_poses():
     robots = 0
     for path in sorted(SHARED.rglob("model*.sdf")):

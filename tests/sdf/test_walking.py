@@ -61,7 +61,7 @@ def test_script_without_waypoints_has_none():
 
 def test_path_is_curved_and_straight_with_full_tension():
     corner = [(0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0), (2.0, 1.0, 1.0, 0.0)]
-    # Catmull-Rom: from (0, 0) to (1, 0) with the tangents (0.5, 0) and (0.5, 0.5), in the middle of the way
+    # Catmull-Rom: the middle between (0, 0) and (1, 0), with the tangents (0.5, 0) and (0.5, 0.5).
     x, y = pose_at(Walk(Script(trajectories=(path(*corner),))), 0.5)
     assert (x, y) == pytest.approx((0.5, -0.0625))
     x, y = pose_at(Walk(Script(trajectories=(path(*corner, tension=1.0),))), 0.5)

@@ -14,7 +14,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.shell import PROGRAMS, run_shell, shell_environment, write_programs
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the commands used are those of POSIX")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the test uses POSIX commands")
 
 BARE = "/usr/bin:/bin"
 
@@ -28,7 +28,7 @@ def script(folder: Path, name: str, text: str) -> Path:
     return path
 
 
-def inside(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
+def run_in_shell(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
     """Run ``linkwright shell -- WORDS`` as a user does."""
     environment = {"PATH": BARE, "HOME": os.environ.get("HOME", "/"), **variables}
     return subprocess.run(
@@ -43,19 +43,19 @@ def inside(words: list[str], **variables: str) -> subprocess.CompletedProcess[st
 
 def test_programs_are_found_in_shell() -> None:
     names = " ".join(PROGRAMS)
-    result = inside(["sh", "-c", f"for name in {names}; do command -v $name || echo no $name; done"])
+    result = run_in_shell(["sh", "-c", f"for name in {names}; do command -v $name || echo no $name; done"])
     assert len(result.stdout.splitlines()) == len(PROGRAMS)
     assert "no " not in result.stdout
 
 
 def test_installed_program_takes_precedence(tmp_path: Path) -> None:
     script(tmp_path / "bin", "xacro", "echo the real one")
-    result = inside(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE}")
+    result = run_in_shell(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE}")
     assert result.stdout == "the real one\n"
 
 
 def test_python_is_linkwrights_without_installed_ros() -> None:
-    result = inside(["python3", "-c", "import linkwright, sys; print(sys.prefix)"])
+    result = run_in_shell(["python3", "-c", "import linkwright, sys; print(sys.prefix)"])
     assert result.stdout.strip() == sys.prefix
 
 
@@ -79,12 +79,12 @@ def test_nested_shell_does_not_extend_path_twice(tmp_path: Path) -> None:
 
 
 def test_exit_status_is_that_of_command() -> None:
-    assert inside(["sh", "-c", "exit 7"]).returncode == 7
-    assert inside(["sh", "-c", "kill -TERM $$"]).returncode == 128 + signal.SIGTERM
+    assert run_in_shell(["sh", "-c", "exit 7"]).returncode == 7
+    assert run_in_shell(["sh", "-c", "kill -TERM $$"]).returncode == 128 + signal.SIGTERM
 
 
 def test_options_of_command_are_passed_on() -> None:
-    assert inside(["sh", "-c", "echo $0 $1", "-h", "--help"]).stdout == "-h --help\n"
+    assert run_in_shell(["sh", "-c", "echo $0 $1", "-h", "--help"]).stdout == "-h --help\n"
 
 
 def test_unknown_command_is_reported_with_nearest_name() -> None:
@@ -182,7 +182,7 @@ def test_ctrl_c_reaches_command(tmp_path: Path) -> None:
 
 
 def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
-    """As from ``kill -INT``, or from a program that started the shell; a signal to the group arrives once."""
+    """The signal comes from ``kill -INT``, or from the parent of the shell; a signal to the group arrives only once."""
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
     with in_shell(command, tmp_path) as process:
         assert process.stdout is not None
@@ -196,13 +196,13 @@ def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
         assert process.stdout.read() == ""
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells a process that its parent was killed")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux signals a process when its parent was killed")
 def test_command_ends_when_shell_is_killed(tmp_path: Path) -> None:
     with in_shell("echo ready; exec sleep 600", tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         process.kill()
-        assert process.stdout.read() == ""  # ends when nobody holds it any more
+        assert process.stdout.read() == ""  # the pipe ends when all its writers have ended
 
 
 def test_ctrl_c_at_end_of_command_keeps_its_status(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -219,7 +219,7 @@ def test_ctrl_c_at_end_of_command_keeps_its_status(monkeypatch: pytest.MonkeyPat
 
 
 def test_ignored_signals_stay_ignored_in_command(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As with nohup."""
+    """Ignored signals are inherited, as with nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         assert run_shell(["sh", "-c", "kill -HUP $$; exit 4"]) == 4

@@ -17,7 +17,7 @@ from linkwright.simulation.server import server as server_module
 from linkwright.testing import Recording, SteppedSimulation
 from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.sensors.rooms import block
-from tests.simulation.sensors.test_topics import CAMERA, RAYS, carrier, plugin, sensor
+from tests.simulation.sensors.test_topics import CAMERA, RAYS, plugin, robot_with, sensor
 from tests.simulation.test_plugins import SECOND, joint_states, robot, running_server
 from tests.simulation.worlds import GROUND
 
@@ -126,7 +126,7 @@ async def test_failing_plugin_stops_without_affecting_others(failing_point):
         errors = [record.text for record in log if record.level >= LogLevel.ERROR]
         expected = "TypeError" if failing_point == PUBLISHING else f"PluginError: {failing_point}"
         assert [expected in error for error in errors] == [True], errors
-        assert errors[0].startswith("test.world:14:"), "the line of its declaration"
+        assert errors[0].startswith("test.world:14:"), "the message has the line of the plugin's element"
         assert "'faulty' stopped because its code failed" in errors[0]
         assert "test_failing_plugins.py" in errors[0] or failing_point == PUBLISHING
 
@@ -179,9 +179,9 @@ async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
     chance = Random(7)
     if 'type="force_torque"' in text:
         joint = '<joint name="wrist" type="continuous"><parent>head</parent><child>arm</child>{}</joint>'
-        robot = carrier(extra=f'<link name="arm"/>{joint.format(text)}').replace("<static>true</static>", "")
+        robot = robot_with(extra=f'<link name="arm"/>{joint.format(text)}').replace("<static>true</static>", "")
     else:
-        robot = carrier(text)
+        robot = robot_with(text)
     async with running_server(block("wall", "2.5 0 0 0 0 0", "1 20 20"), robot) as (server, _, log):
         assert len(server.plugins("robot")) == 1
         monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: chance.randrange(2))

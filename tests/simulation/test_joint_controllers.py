@@ -8,7 +8,7 @@ from linkwright.messages import get_message
 from tests.simulation.test_plugins import SECOND, running_server
 
 GRAVITY_TORQUE = 1.0 * 9.81 * 0.5
-"""The torque of gravity on the arm below in N m."""
+"""The torque of gravity on the level arm in N m."""
 
 
 def arm(plugin: str, limit: str = "<lower>-2</lower><upper>2</upper>") -> str:

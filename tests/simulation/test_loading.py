@@ -48,7 +48,7 @@ async def test_unchanged_models_keep_moving(tmp_path):
         assert (answer.world.name, answer.world.world_resource.uri) == ("test", str(tmp_path / "a.world"))
         assert (simulation.model_pose("one"), *map(tuple, simulation.link_velocity("one::link"))) == state
         assert simulation.time == 100_000_000
-        assert simulation.revision == 0, "the model was not compiled again"
+        assert simulation.revision == 0, "MuJoCo's model was not compiled again"
 
 
 async def test_relocated_model_is_moved_and_starts_there(tmp_path):
@@ -185,7 +185,7 @@ async def test_missing_assets_can_be_ignored(tmp_path):
         answer = await load(session, tmp_path, missing, ignore_missing_or_unsupported_assets=True)
         assert answer.result.result == answer.result.RESULT_OK
         answer = await load(session, tmp_path, missing, box("one", "0 0 9 0 0 0"))
-        assert answer.result.result == answer.result.RESULT_OK, "the include was missing before, too"
+        assert answer.result.result == answer.result.RESULT_OK, "the include was already missing"
 
 
 async def test_missing_world_and_unknown_file_are_reported(tmp_path):

@@ -32,7 +32,7 @@ from tests.simulation.worlds import GROUND, box, make_simulation, mbot, model
 
 SECOND = 1_000_000_000
 CLASSIC_SYSTEMS = ("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin")
-"""Their functions are tested in tests/simulation/test_server.py and test_classic_services.py."""
+"""Plugins that tests/simulation/test_server.py and test_classic_services.py test."""
 UNSIMULATED = (
     "elevator",
     "wheel-slip",

@@ -79,7 +79,7 @@ def test_restitution_of_two_surfaces_is_their_product():
         0.64, abs=0.02
     )
     assert bounce_height(make_simulation(floor(0.0), bouncing_model(start, 0.8)), 1.0) < 0.01
-    slow = bouncing_model(start, 0.8, extra="<threshold>6</threshold>")  # it hits at 4.4 m/s
+    slow = bouncing_model(start, 0.8, extra="<threshold>6</threshold>")  # the impact speed is 4.4 m/s
     assert bounce_height(make_simulation(floor(), slow), 1.0) < 0.01
 
 

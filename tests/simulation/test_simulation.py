@@ -18,7 +18,7 @@ MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 def test_body_falls_with_gravity():
     simulation = make_simulation(box("ball", "0 0 100 0 0 0"))
     simulation.advance(NANOSECONDS_PER_SECOND)
-    # The semi-implicit step is behind by half a step: g t dt / 2.
+    # The semi-implicit integration lags by half a step: g t dt / 2.
     assert simulation.model_pose("ball")[2] == pytest.approx(100 - 9.81 / 2, abs=9.81 * 0.001 / 2 + 1e-9)
     assert simulation.link_velocity("ball::link")[0][2] == pytest.approx(-9.81, abs=1e-9)
 

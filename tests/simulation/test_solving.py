@@ -78,7 +78,7 @@ def test_sleeping_box_wakes_when_hit_during_joint_solving():
     simulation = driving_robots(box("wall", "1.2 8 0.1 0 0 0", "0.2 0.4 0.2", mass=0.2))
     tree = int(simulation.model.body_treeid[simulation.model.body("wall::link").id])
     simulation.advance(51 * CHECK_PERIOD)
-    assert not is_solved_jointly(simulation)  # the check sees the bodies at rest
+    assert not is_solved_jointly(simulation)  # the check has found the bodies at rest
     simulation.advance(CHECK_PERIOD * 3 // 4)
     assert simulation.data.tree_asleep[tree] >= 0
     simulation.advance(CHECK_PERIOD // 2)

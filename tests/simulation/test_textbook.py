@@ -121,7 +121,7 @@ def test_four_bar_linkage_stays_closed():
     simulation.push("m::crank", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0))
     for _ in range(20):
         simulation.advance(100 * MILLISECOND)
-        # A parallelogram: crank and rocker turn by the same angle, and the coupler not at all.
+        # In a parallelogram, crank and rocker rotate by the same angle, and the coupler does not rotate.
         crank, rocker = (simulation.joint_state(f"m::{name}")[0] for name in ("a", "d"))
         assert crank == pytest.approx(rocker, abs=2e-3)
     assert abs(simulation.joint_state("m::a")[0]) > 0.1

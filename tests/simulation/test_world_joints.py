@@ -38,7 +38,7 @@ def test_pendulum_of_two_models_has_textbook_period(parent):
     length = sqrt(0.05**2 + 0.998751**2)
     assert (crossings[2] - crossings[0]) == pytest.approx(2 * pi * sqrt(length / 9.81), rel=2e-3)
     assert simulation.model_pose("base")[:3] == (0, 0, 2)
-    assert list(simulation.scene.models) == ["base", "bob"], "children come last"
+    assert list(simulation.scene.models) == ["base", "bob"], "children are listed last"
 
 
 def test_models_fixed_to_each_other_move_as_one():
@@ -49,7 +49,7 @@ def test_models_fixed_to_each_other_move_as_one():
     first, second = (np.array(simulation.model_pose(name)) for name in ("one", "two"))
     assert np.linalg.norm(second[:3] - first[:3]) == pytest.approx(1.5, abs=1e-9)
     assert second[3:] == pytest.approx(first[3:], abs=1e-9)
-    assert abs(first[5]) > 0.5, "both turn"
+    assert abs(first[5]) > 0.5, "both models rotate"
 
 
 def test_prismatic_world_joint_stops_at_limits_for_either_child():

@@ -61,7 +61,7 @@ def load_simulation(path: Path) -> Simulation:
 
 
 def box(name: str, pose: str, size: str = "1 1 1", mass: float = 1.0, surface: str = "") -> str:
-    """Return a movable box; its inertia is that of a solid box."""
+    """Return a movable box with the inertia of a solid box."""
     x, y, z = (float(length) for length in size.split())
     inertia = (
         f"<ixx>{mass * (y * y + z * z) / 12}</ixx><iyy>{mass * (x * x + z * z) / 12}</iyy>"

@@ -71,7 +71,7 @@ def test_word_is_recognized_in_noise(engine, name):
 
 
 def with_reverberation(samples, direct_db, seed):
-    """Add a reverberation of 0.4 s; its energy is `direct` dB below that of the direct sound."""
+    """Add a reverberation of 0.4 s; its energy is `direct` dB below the energy of the direct sound."""
     at = np.arange(int(0.4 * RATE)) / RATE
     decay = np.random.default_rng(seed).normal(size=len(at)) * 10 ** (-3 * at / 0.4)
     decay *= 10 ** (-direct_db / 20) / np.sqrt(np.sum(decay**2))
@@ -153,9 +153,8 @@ def test_similar_utterance_reports_nearest_word(engine, path):
     noisy = say(WORDS["turn left"], speed=1.05, level=2000, noise=1000, silence=0.8, seed=1)
     (final_result,) = [result for result in results_of(engine, noisy) if result.final]
     assert (final_result.text, final_result.nearest) == ("", "turn left")
-    other_engine = EnrolledEngine(
-        EngineOptions(("stop", "back"), model=path)
-    )  # a word that is not a phrase is not reported
+    # A word that is not a phrase is not reported.
+    other_engine = EnrolledEngine(EngineOptions(("stop", "back"), model=path))
     (final_result,) = [result for result in results_of(other_engine, noisy) if result.final]
     assert (final_result.text, final_result.nearest) == ("", "")
     (final_result,) = [

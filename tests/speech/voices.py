@@ -7,7 +7,7 @@ import numpy as np
 from linkwright.speech.sound.samples import RATE, Samples
 
 _PHONES = {
-    # first three formants in Hz, share of voice, seconds
+    # the first three formants in Hz, the voiced fraction, the duration in seconds
     "a": ((750, 1250, 2500), 1.0, 0.14),
     "e": ((500, 1850, 2550), 1.0, 0.12),
     "i": ((290, 2250, 3000), 1.0, 0.12),
@@ -95,5 +95,5 @@ def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
 
 
 def add_noise(samples: Samples, noise: np.ndarray, decibels: float, level: float) -> Samples:
-    """Add noise to a recording, so many decibels below the level of its word."""
+    """Add noise to a recording; its level is a number of decibels below the level of the word."""
     return np.rint(samples + level / 10 ** (decibels / 20) * noise[: len(samples)]).astype(np.int16)

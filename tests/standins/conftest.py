@@ -14,7 +14,7 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 @pytest.fixture(autouse=True)
 def _fresh_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Let each test use the module as after its import, in a folder of its own."""
+    """Let each test use a newly imported module, in a separate folder."""
     import xacro
 
     monkeypatch.chdir(tmp_path)

@@ -11,7 +11,7 @@ from std_msgs.msg import Header
 BRIDGE = CvBridge()
 
 RED = np.array([[[0, 0, 255], [0, 0, 255]]], np.uint8)
-"""Two pixels, blue first."""
+"""Two red pixels; the first channel is blue."""
 
 
 def image(array, encoding, **fields):

@@ -66,7 +66,7 @@ def test_numpy_arrays_are_accepted_unless_ros_distro_is_set_to_humble(variables)
 
 
 def test_own_commands_accept_numpy_arrays(tmp_path):
-    """Their processes find the stand-ins in the shell, as users' programs do."""
+    """In the shell, the processes of commands import the stand-ins, as users' programs do."""
     program = tmp_path / "ours.py"
     imports = "import json, linkwright.cli, numpy, rclpy\nfrom sensor_msgs.msg import Image"
     program.write_text(
@@ -77,7 +77,7 @@ def test_own_commands_accept_numpy_arrays(tmp_path):
 
 @pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 def test_field_rules_match_real_message_classes():
-    """Jazzy's do where they are asked to; setters are those of Humble."""
+    """Jazzy's classes check fields if an environment variable enables this. The setters are compared with Humble's."""
     real = outcomes(python=PYTHON, ROS_PYTHON_CHECK_FIELDS="1")
     assert outcomes(ROS_DISTRO="jazzy", ROS_PYTHON_CHECK_FIELDS="1") == real
     humble = outcomes(ROS_DISTRO="humble")

@@ -98,7 +98,7 @@ def test_missing_names_raise_import_error_with_suggestion(tmp_path):
 
 @pytest.mark.parametrize("below", ["", "src", "src/my_msgs"])
 def test_workspace_package_is_importable_without_build(workspace, below):
-    # In src, Python itself sees folders my_msgs and my_msgs/msg, and would take them for empty packages.
+    # In src, Python itself would import the folders my_msgs and my_msgs/msg as empty packages.
     program = """
         sys.path.insert(0, "")
         from my_msgs.msg import Count

@@ -1,4 +1,4 @@
-"""The linters' tests that `linkwright pkg create` writes run by plain pytest, which imports our rclpy, too."""
+"""The linter tests that `linkwright pkg create` writes, run by plain pytest, which can import our rclpy too."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ def image(seconds):
     return Image(header=Header(stamp=Time(seconds=seconds).to_msg()))
 
 
-def at(seconds):
+def time_at(seconds):
     return Time(seconds=seconds, clock_type=ClockType.ROS_TIME)
 
 
@@ -31,7 +31,7 @@ def stamp(message):
 
 
 class Matches(list):
-    """The stamps of the sets that a synchronizer puts out."""
+    """The stamps of the sets of messages that a synchronizer returns."""
 
     def __init__(self, synchronizer):
         super().__init__()
@@ -133,9 +133,9 @@ def test_cache_keeps_last_messages():
     for seconds in (1, 2, 3, 4):
         source.signalMessage(image(seconds))
     assert matches == [[1], [2], [3], [4]]
-    assert (cache.getOldestTime(), cache.getLastestTime()) == (at(2), at(4))
-    assert [stamp(message) for message in cache.getInterval(at(1.5), at(3))] == [2, 3]
-    assert stamp(cache.getElemAfterTime(at(2.5))) == 3
-    assert stamp(cache.getElemBeforeTime(at(2.5))) == 2
-    assert cache.getElemAfterTime(at(5)) is cache.getElemBeforeTime(at(1)) is None
+    assert (cache.getOldestTime(), cache.getLastestTime()) == (time_at(2), time_at(4))
+    assert [stamp(message) for message in cache.getInterval(time_at(1.5), time_at(3))] == [2, 3]
+    assert stamp(cache.getElemAfterTime(time_at(2.5))) == 3
+    assert stamp(cache.getElemBeforeTime(time_at(2.5))) == 2
+    assert cache.getElemAfterTime(time_at(5)) is cache.getElemBeforeTime(time_at(1)) is None
     assert stamp(cache.getLast()) == 4

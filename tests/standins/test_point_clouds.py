@@ -66,7 +66,7 @@ def test_mixed_field_types_with_gaps_are_read():
         point_cloud2.read_points_numpy(cloud)
     again = point_cloud2.create_cloud(Header(), fields, read)
     assert again.data == cloud.data[:20]
-    assert not any(again.data[4:8]), "what no field covers is zero"
+    assert not any(again.data[4:8]), "bytes without a field are zero"
 
 
 def test_padded_rows_and_big_endian_are_read():

@@ -132,11 +132,11 @@ class TestRunning:
         )
         code = "from my_robot.msg import Count; print(Count(number=3, names=['a']))"
         assert output_of("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
-        # Where Python takes the folders for packages.
+        # In src, Python itself would import the folders as packages.
         assert output_of("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
+@pytest.mark.skipif(os.name == "nt", reason="Windows cannot send SIGINT")
 class TestInterrupt:
     def interrupted(self, tmp_path, code):
         (tmp_path / "node.py").write_text("import rclpy, signal\n" + textwrap.dedent(code))
@@ -181,9 +181,8 @@ class TestProcessEffects:
             print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
             """
         plain = {"PATH": os.environ["PATH"]}
-        others = (
-            output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=plain) == "True"
-        )  # as Ubuntu has
+        # Ubuntu has a sitecustomize of its own.
+        others = output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=plain) == "True"
         assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
 
     def test_similar_missing_module_is_not_found(self):

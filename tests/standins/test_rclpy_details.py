@@ -1,4 +1,4 @@
-"""Details of rclpy that its own tests and careful programs look at."""
+"""Details of rclpy on which its own tests and careful programs depend."""
 
 from __future__ import annotations
 

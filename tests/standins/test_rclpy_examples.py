@@ -108,7 +108,7 @@ class TestMessageSnapshots:
 
 
 class PriorityExecutor(Executor):
-    """Nodes of high priority are never kept waiting by the others."""
+    """An executor in which nodes of high priority never wait for the others."""
 
     def __init__(self):
         super().__init__()
@@ -163,11 +163,11 @@ class TestOwnParts:
         order, slow = [], threading.Event()
         urgent = rclpy.create_node("urgent")
 
-        def dawdle(_message):
+        def block(_message):
             slow.wait(SECONDS)
             order.append("slow")
 
-        node.create_subscription(String, "slow", dawdle, 10)
+        node.create_subscription(String, "slow", block, 10)
         urgent.create_subscription(String, "urgent", lambda _message: (order.append("urgent"), slow.set()), 10)
         executor = PriorityExecutor()
         executor.add_high_priority_node(urgent)
@@ -226,7 +226,7 @@ class TestEvents:
 
 class TestAsyncio:
     def test_action_goal_is_awaited_in_asyncio(self, node):
-        """As the asyncio client of the examples: the loop spins the node between its own steps."""
+        """As in the asyncio client of the examples, the loop spins the node between its own steps."""
 
         def execute(goal_handle):
             goal_handle.succeed()

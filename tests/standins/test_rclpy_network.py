@@ -1,4 +1,4 @@
-"""Users' nodes in processes of their own, which meet over DDS."""
+"""Users' nodes in separate processes, which communicate over DDS."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.domains import own_domain
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(not dds.is_available(), reason="there is no wheel of cyclonedds here"),
+    pytest.mark.skipif(not dds.is_available(), reason="cyclonedds is not installed"),
 ]
 
 SERVER = """\

@@ -41,7 +41,7 @@ class Counter(Node):
         self.publisher_ = self.create_publisher(String, "topic", 10)
         self.timer = self.create_timer(0.01, self.timer_callback)
         self.i = 0
-        # Names that other classes of nodes use for themselves.
+        # Attributes that other node classes use internally.
         self._publishers, self._timers, self._name, self._parameters, self._graph = {}, [], "mine", {}, None
         self._clock = self._logger = self._subscriptions = self._services = self._clients = None
 
@@ -148,7 +148,7 @@ class TestMinimal:
         service, client = MinimalService(), MinimalClient()
 
         def serve():
-            with suppress(ExternalShutdownException):  # raised if it waits just then, as by rclpy
+            with suppress(ExternalShutdownException):  # raised in a waiting executor, as by rclpy
                 rclpy.spin(service, executor=SingleThreadedExecutor())
 
         thread = threading.Thread(target=serve, daemon=True)
@@ -311,7 +311,7 @@ class TestNode:
     def test_entities_are_listed_and_destroyed(self, node):
         publisher = node.create_publisher(String, "chatter", 1)
         assert publisher in list(node.publishers)
-        assert len(list(node.publishers)) == 2  # and /parameter_events
+        assert len(list(node.publishers)) == 2  # the other one is for /parameter_events
         subscription = node.create_subscription(String, "chatter", print, 1)
         assert list(node.subscriptions) == [subscription]
         timer = node.create_timer(1.0, None)

@@ -1,4 +1,4 @@
-"""Recording, playing and rewriting by programs: the other half of ``rosbag2_py``."""
+"""Recording, playing and conversion by programs, with ``rosbag2_py``."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_recorder_canceled_before_start_ends_at_once(tmp_path) -> None:
     recorder = rosbag2_py.Recorder("warn")
     recorder.cancel()
     options = rosbag2_py.RecordOptions()
-    options.all = True  # Humble's name
+    options.all = True  # the name in Humble
     recorder.record(StorageOptions(uri=str(tmp_path / "drive")), options)
     assert (tmp_path / "drive" / "metadata.yaml").exists()
     with pytest.raises(RuntimeError, match="xxx"):

@@ -48,7 +48,7 @@ def opened(path):
     return reader
 
 
-def rest(reader):
+def read_rest(reader):
     read = []
     while reader.has_next():
         topic, _, stamp_ns = reader.read_next()
@@ -65,7 +65,7 @@ def test_written_messages_are_read(tmp_path, storage):
     topic, data, stamp_ns = reader.read_next()
     assert (topic, stamp_ns) == ("/numbers", 1000)
     assert deserialize_message(data, get_message(types[topic])) == Int32(data=0)
-    assert len(rest(reader)) == 7
+    assert len(read_rest(reader)) == 7
     with pytest.raises(RuntimeError, match="Bag is at end"):
         reader.read_next()
 
@@ -74,12 +74,12 @@ def test_topics_are_filtered_and_seek_moves_to_time(tmp_path):
     write(tmp_path / "bag")
     reader = opened(tmp_path / "bag")
     reader.set_filter(StorageFilter(topics=["/words"]))
-    assert rest(reader) == [("/words", 1005 + 10 * number) for number in range(4)]
+    assert read_rest(reader) == [("/words", 1005 + 10 * number) for number in range(4)]
     reader.seek(1020)
-    assert rest(reader) == [("/words", 1025), ("/words", 1035)]
+    assert read_rest(reader) == [("/words", 1025), ("/words", 1035)]
     reader.reset_filter()
     reader.seek(1030)
-    assert rest(reader) == [("/numbers", 1030), ("/words", 1035)]
+    assert read_rest(reader) == [("/numbers", 1030), ("/words", 1035)]
     reader.set_filter(StorageFilter(topics=["/nothing"]))
     reader.seek(0)
     assert not reader.has_next()
@@ -99,21 +99,21 @@ def test_changed_filter_neither_repeats_nor_skips_messages(tmp_path, storage):
     reader.read_next()
     assert reader.read_next()[::2] == ("/a", 2)
     reader.reset_filter()
-    assert rest(reader) == [("/c", 2), ("/b", 3), ("/a", 9)]
+    assert read_rest(reader) == [("/c", 2), ("/b", 3), ("/a", 9)]
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_messages_are_read_in_reverse(tmp_path, storage):
     write(tmp_path / "bag", storage)
     reader = opened(tmp_path / "bag")
-    forwards = rest(reader)
+    forwards = read_rest(reader)
     reader.set_read_order(rosbag2_py.ReadOrder(reverse=True))
     reader.seek(2_000_000_000_000)
-    assert rest(reader) == forwards[::-1]
+    assert read_rest(reader) == forwards[::-1]
     reader.seek(1015)
     assert reader.read_next()[::2] == ("/words", 1015)
     reader.set_filter(StorageFilter(topics=["/numbers"]))
-    assert rest(reader) == [("/numbers", 1010), ("/numbers", 1000)]
+    assert read_rest(reader) == [("/numbers", 1010), ("/numbers", 1000)]
     with pytest.raises(RuntimeError, match="File"):
         reader.set_read_order(rosbag2_py.ReadOrder(rosbag2_py.ReadOrderSortBy.File))
 
@@ -229,4 +229,4 @@ writer.create_topic(TopicMetadata(name="chatter", type="std_msgs/msg/String", se
 writer.write("chatter", serialize_message(String(data="hello")), 5)
 """
     subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=process.environment(), check=True)
-    assert rest(opened(tmp_path / "bag")) == [("chatter", 5)]
+    assert read_rest(opened(tmp_path / "bag")) == [("chatter", 5)]

@@ -37,7 +37,7 @@ class Servers(Node):
             )
         latched_qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.estimate = self.create_publisher(PoseWithCovarianceStamped, "amcl_pose", latched_qos)
-        self.told = []
+        self.initial_poses = []
         self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.on_initial_pose, 10)
         ActionServer(
             self,
@@ -56,7 +56,7 @@ class Servers(Node):
         return response
 
     def on_initial_pose(self, message):
-        self.told.append(message)
+        self.initial_poses.append(message)
         self.estimate.publish(message)
 
     def on_accepted(self, handle):
@@ -160,8 +160,8 @@ def test_tutorial_patrol_program_visits_all_rooms(page, servers, monkeypatch, ca
     monkeypatch.setattr(rclpy, "init", lambda: None)
     monkeypatch.setattr(rclpy, "shutdown", lambda: None)
     names = {"__name__": "patrol"}
-    exec(program.text, names)  # a page of ours
+    exec(program.text, names)  # the code is from our page
     names["main"]()
     rooms = [line for line in capsys.readouterr().out.splitlines() if line.startswith("in the")]
     assert rooms == ["in the bedroom", "in the study", "in the living room"]
-    assert not servers.told, "it says where the robot is, and cannot know"
+    assert not servers.initial_poses, "the program must not publish an initial pose"

@@ -1,4 +1,4 @@
-"""The modules that tables of names describe: exactly those names, and all else that Python's own modules do."""
+"""The modules that tables of names describe: they have exactly those names, and behave like Python's own modules."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_names_that_ros_does_not_export_cannot_be_imported(module, name):
 
 
 def test_origins_are_names_of_other_tables():
-    """An import in another table's module must not hide a table's mistake."""
+    """Otherwise an import in another table's module could hide a mistake in a table."""
     for name, module in MODULES.items():
         for attribute, origin in module.names.items():
             other = MODULES.get(origin.origin)

@@ -55,7 +55,7 @@ def spin(node, times=6):
 
 
 class FramePublisher(Node):
-    """Tells where a turtle is."""
+    """Publishes the pose of a turtle as a transform."""
 
     def __init__(self):
         super().__init__("turtle_tf2_frame_publisher")
@@ -68,7 +68,7 @@ class FramePublisher(Node):
 
 
 class FrameListener(Node):
-    """Follows a turtle."""
+    """Looks up the transforms of a turtle."""
 
     def __init__(self):
         super().__init__("turtle_tf2_frame_listener")

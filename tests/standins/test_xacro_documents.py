@@ -72,7 +72,7 @@ def test_mappings_accept_any_value_and_are_unchanged(write):
     mappings = {"n": 7}
     assert 'name="l7"' in xacro.process_file(path, mappings=mappings).toxml()
     assert mappings == {"n": 7}
-    assert 'name="l1"' in xacro.process(path), "no argument of an earlier call is left"
+    assert 'name="l1"' in xacro.process(path), "arguments of an earlier call have no effect"
 
 
 def test_parse_accepts_files_paths_texts_and_documents(write):
@@ -170,7 +170,7 @@ def test_warnings_are_printed(capsys):
     expanded('<xacro:property name="pi" value="3"/>${xacro.message("said", 2)}', verbosity=0)
     err = capsys.readouterr().err
     assert "XAC306" not in err
-    assert "said 2" in err, "what the description itself says is always printed"
+    assert "said 2" in err, "messages of the description itself are always printed"
 
 
 def test_root_dir_variable_is_respected(write, tmp_path, monkeypatch):

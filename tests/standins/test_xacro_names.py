@@ -1,4 +1,4 @@
-"""The names of the module ``xacro`` besides those that expand descriptions."""
+"""The names of the module ``xacro`` except the functions that expand descriptions."""
 
 from __future__ import annotations
 

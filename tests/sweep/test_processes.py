@@ -1,4 +1,4 @@
-"""Sweeps in processes of their own, which die, and are interrupted."""
+"""Sweeps in separate processes, which can die and be interrupted."""
 
 import os
 import signal
@@ -13,7 +13,7 @@ from linkwright.sweep.plan import plan_runs
 from linkwright.sweep.running import run_once
 from linkwright.sweep.scenario import load_scenario
 from linkwright.sweep.workers import run_locally
-from tests.begun import telling
+from tests.begun import command_that_reports
 from tests.sweep.scenarios import HEAD, SQUARES, write
 from tests.waiting import wait_until
 
@@ -52,7 +52,7 @@ def drive(noise, friction, seed):
 """
 
 
-def ran(path: Path, workers: int) -> dict[int, object]:
+def run_scenario(path: Path, workers: int) -> dict[int, object]:
     outcomes = {}
     run_locally(
         path, plan_runs(load_scenario(path)), workers, lambda outcome: outcomes.setdefault(outcome.row, outcome)
@@ -64,25 +64,25 @@ def test_results_are_identical_in_any_process_and_order(tmp_path):
     path = write(tmp_path, SIMULATED)
     scenario = load_scenario(path)
     here = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
-    assert ran(path, 2) == here
+    assert run_scenario(path, 2) == here
     assert all(not outcome.error for outcome in here.values())
     assert len({outcome.results["a"] for outcome in here.values()}) == 4
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no signals there")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
 def test_dead_worker_process_is_replaced_and_run_retried_once(tmp_path):
     path = write(tmp_path, DYING)
-    outcomes = ran(path, 2)
+    outcomes = run_scenario(path, 2)
     assert [outcomes[row].results.get("square") for row in (1, 2, 3, 4)] == [1, 4, 9, None]
     assert outcomes[4].error == "the process of the run was ended by SIGKILL, twice"
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is no signal there")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
 def test_interrupted_sweep_keeps_rows_and_resumes(tmp_path):
     write(tmp_path, HELD)
     words = ["sweep", "squares.py", "--workers", "1"]
     process = subprocess.Popen(
-        telling("linkwright", *words), cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE
+        command_that_reports("linkwright", *words), cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE
     )
     try:
         wait_until((tmp_path / "held").exists)

@@ -12,7 +12,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.sweep.ray_workers import run_on_ray
 from tests.sweep.scenarios import HEAD, ignore, write
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the tests have Ray on Linux only")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="Ray is tested on Linux only")
 
 LOSING = f"""import os, signal
 from pathlib import Path
@@ -59,7 +59,7 @@ def test_ray_cluster_completes_table_after_losing_worker(tmp_path):
 
 def test_unreachable_ray_cluster_is_an_error(tmp_path):
     with socket.socket() as unused:
-        unused.bind(("127.0.0.1", 0))  # and nobody else can listen there
+        unused.bind(("127.0.0.1", 0))  # reserves the port, so that no other program listens there
         address = f"127.0.0.1:{unused.getsockname()[1]}"
         for cluster in (address, f"ray://{address}"):
             with pytest.raises(LinkwrightError, match="refused") as raised:

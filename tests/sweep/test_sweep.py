@@ -1,4 +1,4 @@
-"""Sweeps: tables, summaries, going on, in this process."""
+"""Sweeps in this process: tables, summaries, and resuming."""
 
 import csv
 import io
@@ -25,8 +25,8 @@ def mixed(world, n):
 """
 
 
-def backwards(scenario, until=None):
-    """A runner in this process that starts with the last row, and is interrupted before a row."""
+def make_reverse_runner(scenario, until=None):
+    """Return a runner in this process that starts with the last row, and is interrupted before a row."""
 
     def run(runs, report):
         for planned_run in reversed(runs):
@@ -48,28 +48,30 @@ def rows_of(path):
     return list(csv.DictReader(io.StringIO(path.read_text())))
 
 
-def swept(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False, paths=None):
+def run_sweep(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False, paths=None):
     scenario = loaded(tmp_path, text)
     sweep = Sweep(scenario, tmp_path / name, ["linkwright", "sweep", "squares.py"], paths and tmp_path / paths)
     messages = []
-    table = sweep.run(backwards(scenario, until), resume=resume, progress=lambda *state: messages.append(state))
+    table = sweep.run(
+        make_reverse_runner(scenario, until), resume=resume, progress=lambda *state: messages.append(state)
+    )
     return table, messages
 
 
 def test_table_rows_are_sorted_regardless_of_completion_order(tmp_path):
-    table, result = swept(tmp_path)
+    table, result = run_sweep(tmp_path)
     assert result[-1] == (6, 6, 0)
     rows = rows_of(tmp_path / "out.csv")
     assert [row["row"] for row in rows] == ["1", "2", "3", "4", "5", "6"]
     assert list(rows[0]) == ["row", "n", "drawn", "seed", "square", "big", "sum", "error"]
     assert [row["square"] for row in rows] == ["1", "1", "4", "4", "9", "9"]
     assert rows[5]["big"] == "true"
-    assert [float(row["sum"]) for row in rows] == table.columns["sum"], "no digit is lost"
+    assert [float(row["sum"]) for row in rows] == table.columns["sum"], "numbers are written with all digits"
     assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == ["out.csv", "out.html", "squares.py"]
 
 
 def test_failed_run_is_a_row_with_error(tmp_path):
-    table, result = swept(tmp_path, MIXED)
+    table, result = run_sweep(tmp_path, MIXED)
     assert result[-1] == (4, 4, 1)
     assert table.failed == [1]
     rows = rows_of(tmp_path / "out.csv")
@@ -79,7 +81,7 @@ def test_failed_run_is_a_row_with_error(tmp_path):
 
 
 def test_paths_are_in_a_file_and_not_in_the_table(tmp_path):
-    swept(tmp_path, DRIVEN, paths="paths.json")
+    run_sweep(tmp_path, DRIVEN, paths="paths.json")
     assert list(rows_of(tmp_path / "out.csv")[0]) == ["row", "n", "seed", "n_and_seed", "error"]
     runs = json.loads((tmp_path / "paths.json").read_text())["runs"]
     assert [(run["row"], run["parameters"], run["seed"]) for run in runs[1:3]] == [(2, {"n": 1}, 1), (3, {"n": 2}, 0)]
@@ -89,17 +91,17 @@ def test_paths_are_in_a_file_and_not_in_the_table(tmp_path):
 
 
 def test_interrupted_sweep_keeps_its_paths(tmp_path):
-    swept(tmp_path, DRIVEN, paths="whole.json")
+    run_sweep(tmp_path, DRIVEN, paths="whole.json")
     (tmp_path / "out.csv").unlink()
-    swept(tmp_path, DRIVEN, until=2, paths="paths.json")
+    run_sweep(tmp_path, DRIVEN, until=2, paths="paths.json")
     with pytest.raises(LinkwrightError, match="has other runs than this one"):
-        swept(tmp_path, DRIVEN, resume=True)
-    swept(tmp_path, DRIVEN, resume=True, paths="paths.json")
+        run_sweep(tmp_path, DRIVEN, resume=True)
+    run_sweep(tmp_path, DRIVEN, resume=True, paths="paths.json")
     assert (tmp_path / "paths.json").read_bytes() == (tmp_path / "whole.json").read_bytes()
 
 
 def test_parquet_table_has_same_values_and_types(tmp_path):
-    table, _ = swept(tmp_path, MIXED, "out.parquet")
+    table, _ = run_sweep(tmp_path, MIXED, "out.parquet")
     read = pq.read_table(tmp_path / "out.parquet").to_pydict()
     assert read["row"] == [1, 2, 3, 4]
     assert read["float_or_int"] == [0.5, None, 0.5, 2.0]
@@ -112,14 +114,14 @@ def test_resumed_sweep_writes_identical_files(tmp_path):
     whole, interrupted = tmp_path / "whole", tmp_path / "interrupted"
     whole.mkdir()
     interrupted.mkdir()
-    swept(whole)
-    table, _ = swept(interrupted, until=3)
+    run_sweep(whole)
+    table, _ = run_sweep(interrupted, until=3)
     assert table.columns["row"] == [4, 5, 6]
     assert "3 runs remain" in (interrupted / "out.html").read_text()
     journal = interrupted / "out.csv.unfinished"
     with journal.open("a") as file:
-        file.write('{"row": 3, "resul')  # the power went
-    table, output = swept(interrupted, resume=True)
+        file.write('{"row": 3, "resul')  # a row that a power failure truncated
+    table, output = run_sweep(interrupted, resume=True)
     assert output[0] == (4, 6, 0)
     assert not journal.exists()
     for name in ("out.csv", "out.html"):
@@ -128,13 +130,13 @@ def test_resumed_sweep_writes_identical_files(tmp_path):
 
 def test_unfinished_sweep_is_neither_lost_nor_mixed_with_another(tmp_path):
     with pytest.raises(LinkwrightError) as raised:
-        swept(tmp_path, resume=True)
+        run_sweep(tmp_path, resume=True)
     assert raised.value.diagnostics[0].code == "SWEEP109"
-    swept(tmp_path, until=3)
+    run_sweep(tmp_path, until=3)
     before = (tmp_path / "out.csv.unfinished").read_bytes()
     for resume, text, code in ((False, SQUARES, "SWEEP107"), (True, SQUARES.replace("seeds=2", "seeds=3"), "SWEEP108")):
         with pytest.raises(LinkwrightError) as raised:
-            swept(tmp_path, text, resume=resume)
+            run_sweep(tmp_path, text, resume=resume)
         assert raised.value.diagnostics[0].code == code
     assert (tmp_path / "out.csv.unfinished").read_bytes() == before
 
@@ -145,10 +147,10 @@ def test_full_disk_keeps_previous_table(tmp_path):
     scenario = loaded(tmp_path)
     sweep = Sweep(scenario, tmp_path / "out.csv", ["linkwright"])
     with full_disk(200), pytest.raises(LinkwrightError, match="too large") as raised:
-        sweep.run(backwards(scenario), resume=False, progress=lambda *_: None)
+        sweep.run(make_reverse_runner(scenario), resume=False, progress=lambda *_: None)
     assert raised.value.diagnostics[0].code == "SWEEP110"
     assert (tmp_path / "out.csv").read_text() == "old"
-    table = sweep.run(backwards(scenario), resume=True, progress=lambda *_: None)
+    table = sweep.run(make_reverse_runner(scenario), resume=True, progress=lambda *_: None)
     assert table.columns["row"] == [1, 2, 3, 4, 5, 6]
 
 
@@ -180,9 +182,9 @@ class Page(HTMLParser):
 
 
 def test_summary_has_plots_and_no_external_resources(tmp_path):
-    swept(tmp_path)
+    run_sweep(tmp_path)
     page = Page((tmp_path / "out.html").read_text())
-    assert page.count("svg") == 3 + 2 * 3, "of each result one by itself, and one against each parameter that differs"
+    assert page.count("svg") == 3 + 2 * 3, "each result has a plot, and a plot for each varied parameter"
     assert page.count("circle") == 6 * 6
     assert page.count("tr", id="row-6") == 1
     assert page.count("a", href="#row-6") == 6
@@ -192,7 +194,7 @@ def test_summary_has_plots_and_no_external_resources(tmp_path):
 
 
 def test_summary_lists_failures_with_rerun_command(tmp_path):
-    swept(tmp_path, MIXED)
+    run_sweep(tmp_path, MIXED)
     text = (tmp_path / "out.html").read_text()
     assert "&lt;no&gt; way" in text
     assert "linkwright sweep squares.py --rerun 2" in text
@@ -200,7 +202,7 @@ def test_summary_lists_failures_with_rerun_command(tmp_path):
 
 
 def test_summary_exists_for_sweep_of_only_errors(tmp_path):
-    table, _ = swept(tmp_path, f"{HEAD}@scenario(n=[1])\ndef f(n): return {{'x': 1 / 0}}\n")
+    table, _ = run_sweep(tmp_path, f"{HEAD}@scenario(n=[1])\ndef f(n): return {{'x': 1 / 0}}\n")
     assert table.failed == [0]
     assert Page((tmp_path / "out.html").read_text()).count("svg") == 0
 
@@ -208,7 +210,7 @@ def test_summary_exists_for_sweep_of_only_errors(tmp_path):
 @pytest.mark.parametrize("values", [[1.0, 1.0], [0.0, 1e-12], [-5.0, 1e9], [1e-300, 2e-300]])
 def test_summary_plots_extreme_values(tmp_path, values):
     text = f"{HEAD}@scenario(n=[0, 1])\ndef f(n): return {{'x': {values}[n]}}\n"
-    swept(tmp_path, text)
+    run_sweep(tmp_path, text)
     page = (tmp_path / "out.html").read_text()
     assert "nan" not in page.lower().replace("standard", "")
     assert Page(page).count("circle") == 2

@@ -1,1 +1,1 @@
-"""Other systems, as far as tests on this one can check them: system-specific modules, and a limited Python."""
+"""Tests of other systems that can run on this one: system-specific modules, and a limited Python."""

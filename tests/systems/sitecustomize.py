@@ -1,8 +1,8 @@
-"""A Python that lacks what another system lacks, for processes with this folder on ``PYTHONPATH``.
+"""A Python without the features that another system lacks, for processes with this folder on ``PYTHONPATH``.
 
-``LINKWRIGHT_TESTS_SYSTEM=windows``: modules, functions, signals and sockets of POSIX are not there, event loops watch
-neither files nor signals, and ``sys.platform`` is ``win32``. ``macos``: what only Linux has is not there: ``/proc``,
-epoll and affinities. What cannot be told from here: paths with drives (`pathlib` has none here) and how processes end.
+With ``LINKWRIGHT_TESTS_SYSTEM=windows``, the modules, functions, signals and sockets of POSIX are missing, event loops
+watch neither files nor signals, and ``sys.platform`` is ``win32``. With ``macos``, the features of Linux are missing:
+``/proc``, epoll and affinities. Not simulated: paths with drives, which `pathlib` lacks here, and the end of processes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ FUNCTIONS = """
     sync sysconf tcgetpgrp tcsetpgrp ttyname uname wait wait3 wait4
 """
 SIGNALS = ("SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM")
-"""Those of Windows that are sent and handled."""
+"""The signals that Windows can send and handle."""
 SIGNAL_FUNCTIONS = (
     "alarm",
     "pause",
@@ -35,7 +35,7 @@ WATCHING = ("add_reader", "add_signal_handler", "add_writer", "create_unix_conne
 
 
 def windows() -> None:
-    """Remove what Windows does not have, after Python's own library has imported what it needs here."""
+    """Remove the features that Windows lacks, after the standard library has imported modules that need them here."""
     import asyncio
     import ctypes.util  # noqa: F401 - looks at the system when it is imported
     import importlib.abc
@@ -56,7 +56,7 @@ def windows() -> None:
     import tempfile  # noqa: F401 - the same
     import urllib.request  # noqa: F401 - the same
 
-    asyncio.new_event_loop().close()  # the loops of Windows cannot be loaded here
+    asyncio.new_event_loop().close()  # the event loops of Windows cannot be imported here
     sysconfig.get_config_vars()
     platform.uname()
     kill, pair = signal.SIGKILL, socket.socketpair
@@ -74,7 +74,7 @@ def windows() -> None:
     for name in MODULES:
         sys.modules.pop(name, None)
     remove(os, FUNCTIONS.split())
-    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has asked the system
+    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has set it by asking the system
     others = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
     remove(signal, [*others, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
     remove(socket, SOCKETS)
@@ -84,13 +84,13 @@ def windows() -> None:
     def refuse(*_words, **_named):
         raise NotImplementedError
 
-    for name in WATCHING:  # the loop that Windows has by default watches nothing
+    for name in WATCHING:  # the default loop of Windows cannot watch files
         setattr(asyncio.SelectorEventLoop, name, refuse)
     sys.platform = "win32"
 
 
 def macos() -> None:
-    """Remove what only Linux has."""
+    """Remove the features that only Linux has."""
     import asyncio  # noqa: F401 - looks at the system when it is imported
     import ctypes.util  # noqa: F401 - the same
     import platform
@@ -103,7 +103,7 @@ def macos() -> None:
 
     sysconfig.get_config_vars()
     platform.uname()
-    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has asked the system
+    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has set it by asking the system
     remove(os, ["eventfd", "memfd_create", "pidfd_open", "sched_getaffinity", "sched_setaffinity", "timerfd_create"])
     remove(socket, ["AF_NETLINK", "AF_PACKET", "SO_PEERCRED", "SO_BINDTODEVICE"])
     remove(select, ["epoll"])
@@ -118,8 +118,8 @@ def macos() -> None:
 
 
 def remove(module, names) -> None:
-    """Take names from a module, where it has them."""
-    if module is os and hasattr(os, "process_cpu_count"):  # `process_cpu_count` is built on the removed function
+    """Remove names from a module if it has them."""
+    if module is os and hasattr(os, "process_cpu_count"):  # `process_cpu_count` uses a removed function
         os.process_cpu_count = os.cpu_count
     for name in names:
         if hasattr(module, name):

@@ -35,9 +35,8 @@ def test_xacro_output_is_the_same_with_crlf(packages, capfd):
     assert main(["xacro", f"{PACKAGE.name}/urdf/mbot_gazebo.xacro", "laser:=true"]) == 0
     written = capfd.readouterr().out
     assert main(["xacro", str(PACKAGE / "urdf" / "mbot_gazebo.xacro"), "laser:=true"]) == 0
-    assert (
-        written.partition("<robot")[2] == capfd.readouterr().out.partition("<robot")[2]
-    )  # before it the file is named
+    # The text before the root element contains the name of the file.
+    assert written.partition("<robot")[2] == capfd.readouterr().out.partition("<robot")[2]
     assert written.count("\n") > 100
 
 

@@ -18,7 +18,7 @@ from tests.domains import own_domain
 from tests.places import PACKAGE
 from tests.waiting import wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems are told from Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems are simulated on Linux")
 
 SYSTEMS = ("windows", "macos")
 ROBOT = PACKAGE / "urdf" / "mbot_with_laser.urdf"
@@ -35,7 +35,7 @@ for module in pkgutil.walk_packages(linkwright.__path__, "linkwright."):
         importlib.import_module(module.name)
 print("all")
 """
-"""Left out are programs, a part of launch files, which import launch_ros, and what needs PyTorch."""
+"""Imports all modules except programs, modules that need launch_ros, and modules that need PyTorch."""
 PROGRAM = """
 import sys
 from launch import LaunchDescription
@@ -125,10 +125,10 @@ def test_world_is_simulated(elsewhere):
 @pytest.mark.parametrize(
     ("address", "path"),
     [
-        ("///C:/robots/arm.stl", "C:/robots/arm.stl"),  # as Path.as_uri writes it there
+        ("///C:/robots/arm.stl", "C:/robots/arm.stl"),  # as written by Path.as_uri on Windows
         ("//localhost/C:/robots/arm.stl", "C:/robots/arm.stl"),
         ("//C:/robots/arm.stl", "C:/robots/arm.stl"),
-        ("//C:\\robots\\arm.stl", "C:\\robots\\arm.stl"),  # file://$(find PACKAGE)\\...
+        ("//C:\\robots\\arm.stl", "C:\\robots\\arm.stl"),  # as in file://$(find PACKAGE)\\...
         ("/d:/my%20robots/arm.stl", "d:/my robots/arm.stl"),
     ],
 )

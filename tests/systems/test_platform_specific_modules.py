@@ -21,7 +21,7 @@ OF_ONE_SYSTEM = {
     "multiprocessing": {"get_context", "set_start_method", "Process", "Pool"},
     "ctypes": {"windll", "WinDLL", "PyDLL", "CDLL"},
 }
-"""By module: what is not on every system, or does something else there."""
+"""The names, by module, that are missing or behave differently on some systems."""
 FOLDERS = ("/proc", "/dev/", "/sys/", "/tmp", "/bin/", "/usr/")
 KNOWN: dict[str, str] = {
     "cli/bag/keys.py": "add_reader getpgrp platform remove_reader tcgetpgrp termios tty",
@@ -88,7 +88,7 @@ KNOWN: dict[str, str] = {
     "wire/multicast.py": "SO_REUSEPORT",
     "wire/zenoh/settings.py": "platform",
 }
-"""Module -> what it uses of that. Whoever adds a line makes it work, or be left out, where that is not there."""
+"""The platform-specific names that each module uses. A listed module must work without them, or not be used there."""
 
 
 @pytest.mark.slow  # reads all of the source, which is the same with each Python

@@ -298,7 +298,7 @@ def test_two_programs_have_separate_contexts_and_arguments(write):
         assert [node.identity.name for node in test.graph.nodes()].count("talker") == 2
         test.advance(1.0)
         names = [node.identity.name for node in test.graph.nodes()]
-        assert "talker" not in names, "a program that ends leaves the graph"
+        assert "talker" not in names, "the nodes of an ended program leave the graph"
     assert [message.data for message in chatter] == [f"/{name} {name} __main__" for name in ("red", "blue") * 2]
 
 
@@ -354,7 +354,7 @@ def test_program_with_own_ctrl_c_handling_can_stop_robot(write):
 
 
 def test_after_ctrl_c_rclpy_publishes_nothing(write, capsys):
-    """The program fails as under ROS 2, but the test does not: it ends the program."""
+    """The program fails as under ROS 2. The test does not fail, because it ends the program itself."""
     messages, ended = run_until_ctrl_c(write(STOPS_AT_CTRL_C.format(options="")))
     assert messages == []
     assert ended.exit_code == 1

@@ -1,4 +1,4 @@
-"""Simulated worlds with stepped time, together with that of a graph."""
+"""Simulated worlds whose time is stepped together with the time of a graph."""
 
 import doctest
 import os
@@ -76,7 +76,7 @@ def test_accelerating_wheels_match_odometry(linear, angular):
 
 
 def test_laser_measures_links_on_fixed_joints(tmp_path):
-    """gz merges them with the laser's link, whose collisions no ray meets. The server keeps them."""
+    """gz merges these links with the laser's link, whose collisions rays ignore. Linkwright's server keeps them."""
     robot = tmp_path / "robot.urdf"
     robot.write_text(LASER_BEHIND_A_POST, encoding="utf-8")
     with SteppedSimulation("empty", robot) as test:

@@ -1,4 +1,4 @@
-"""Pictures from Graphviz."""
+"""Images from Graphviz."""
 
 from __future__ import annotations
 

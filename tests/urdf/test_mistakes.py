@@ -18,7 +18,7 @@ MISTAKES = [pytest.param(text, said, id=title) for title, text, said in SECTION.
 
 VERDICTS = json.loads((OWN.folder / "verdicts.json").read_text(encoding="utf-8"))["urdfdom"]
 NO_TREES = {"A loop below the root", "A loop beside the root", "A link with two parents"}
-"""urdfdom accepts them and then walks along the joints for ever, or loses a joint."""
+"""Cases that urdfdom accepts, and then follows the joints endlessly or loses a joint."""
 
 
 def test_all_cases_of_page_are_parsed():

@@ -161,7 +161,7 @@ class TestMaterials:
         material = read_robot.links[link].visuals[0].material
         return material and material.rgba
 
-    def two(self, *parts):
+    def two_links(self, *parts):
         return robot(*parts, '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>')
 
     def test_global_material_may_follow_its_use(self):
@@ -173,23 +173,23 @@ class TestMaterials:
         assert self.color(read_robot, "a") == self.RED
 
     def test_first_link_that_defines_material_wins(self):
-        read_robot = self.two(
+        read_robot = self.two_links(
             self.link("a", self.material("m", self.RED)), self.link("b", self.material("m", self.GREEN))
         )
         assert self.color(read_robot, "b") == self.RED
         assert list(read_robot.materials) == ["m"]
 
     def test_later_link_may_use_material_of_earlier_link(self):
-        read_robot = self.two(self.link("a", self.material("m", self.RED)), self.link("b", self.material("m")))
+        read_robot = self.two_links(self.link("a", self.material("m", self.RED)), self.link("b", self.material("m")))
         assert self.color(read_robot, "b") == self.RED
 
     def test_earlier_link_cannot_use_material_of_later_link(self):
-        read_robot = self.two(self.link("a", self.material("m")), self.link("b", self.material("m", self.RED)))
+        read_robot = self.two_links(self.link("a", self.material("m")), self.link("b", self.material("m", self.RED)))
         assert self.color(read_robot, "a") is None
         assert read_robot.links["a"].visuals[0].material_name == "m"
 
     def test_unnamed_material_belongs_to_its_visual(self):
-        read_robot = self.two(self.link("a", self.material("", self.RED)), self.link("b", self.material("")))
+        read_robot = self.two_links(self.link("a", self.material("", self.RED)), self.link("b", self.material("")))
         assert self.color(read_robot, "a") == self.RED
         assert self.color(read_robot, "b") is None
         assert read_robot.materials == {}

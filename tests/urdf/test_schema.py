@@ -28,7 +28,7 @@ VALUES = {
     JOINT_TYPE: "revolute",
     VERSION: "1.0",
 }
-ALLOWED = {"URDF171", "URDF180"}  # the joint mimics nothing; without 'version' the limits of URDF 1.2 are ignored
+ALLOWED = {"URDF171", "URDF180"}  # no joint to mimic; the limits of URDF 1.2 are ignored without 'version'
 VERSIONS = ("1.0", "1.2")
 
 
@@ -54,16 +54,16 @@ def full_robot(version: str, shape: ElementRule = SHAPES[0]) -> Element:
     robot = full(ROBOT, parsed)
     robot.attributes["version"] = version
     robot.children.append(Element("link", {"name": "a"}))
-    for element in everything(robot):
+    for element in walk_elements(robot):
         if element.tag == "geometry":
             element.children = [full(shape, parsed)]
     return robot
 
 
-def everything(element: Element):
+def walk_elements(element: Element):
     yield element
     for child in element.elements():
-        yield from everything(child)
+        yield from walk_elements(child)
 
 
 def rules(version, rule=ROBOT, path=()):

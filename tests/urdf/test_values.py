@@ -40,7 +40,7 @@ def stream_reads(text: str) -> bool:
     return at == len(text) and not math.isinf(float(text))
 
 
-def reads(text: str) -> bool:
+def is_readable(text: str) -> bool:
     try:
         number(text)
     except ValueError:
@@ -58,13 +58,13 @@ NO_NUMBERS = """inf -inf nan 0x10 0,5 1_0 1e 1e400 . + --1 1.2.3 ١ 1f 1d ${x} 1
 
 @pytest.mark.parametrize("text", ["", " ", "-1 ", "1 2", "1\t", "- 1", *NO_NUMBERS.split()])
 def test_malformed_numbers_are_rejected(text):
-    assert not reads(text)
+    assert not is_readable(text)
 
 
 @given(st.text("0123456789+-.eE \t\nxin,_", max_size=8))
 @example("1e5e5")
 def test_number_matches_cpp_stream(text):
-    assert reads(text) == stream_reads(text)
+    assert is_readable(text) == stream_reads(text)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

@@ -184,7 +184,7 @@ class Client:
 
 @asynccontextmanager
 async def page(viewer: Viewer, more: str = "") -> AsyncIterator[Client]:
-    """Open a connected page; do not wait for its end if the viewer is slow. `more` is appended to its address."""
+    """Open a connected page, with `more` appended to its address; do not wait long for its end."""
     address = viewer.url.replace("/?", "/ws?") + more
     hurry = aiohttp.ClientWSTimeout(ws_close=1.0)
     async with aiohttp.ClientSession() as session, session.ws_connect(address, timeout=hurry) as socket:

@@ -14,7 +14,7 @@ import pytest
 from tests.places import REPOSITORY
 
 MOST = {"opening": 160, "slider": 21}
-"""The most files of Linkwright whose functions run: from `view` to an open page, from a slider to the page's frames."""
+"""The maximum numbers of files whose functions run from `view` to an open page, and from a slider to the frames."""
 
 
 @cache

@@ -52,7 +52,7 @@ broken = brought_to_linkwright:nothing
 
 
 @pytest.fixture
-def brought(tmp_path, monkeypatch):
+def extension_package(tmp_path, monkeypatch):
     """Create a package with a display and a page feature, and others that cannot be loaded."""
     (tmp_path / "brought_to_linkwright.py").write_text(MODULE)
     facts = tmp_path / "brought_to_linkwright-1.0.dist-info"
@@ -75,7 +75,7 @@ def config_with(cls: str) -> RvizConfig:
     return config
 
 
-async def test_display_of_another_package_is_created_and_offered(brought):
+async def test_display_of_another_package_is_created_and_offered(extension_package):
     async with open_world(config_with("brought/Fence")) as world, page(world.viewer) as client:
         first = await client.opened()
         (fence,) = [display for display in first["tree"]["displays"] if display["cls"] == "brought/Fence"]
@@ -85,17 +85,17 @@ async def test_display_of_another_package_is_created_and_offered(brought):
         assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in offered
 
 
-async def test_display_that_cannot_be_imported_is_kept_and_reported(brought):
+async def test_display_that_cannot_be_imported_is_kept_and_reported(extension_package):
     async with open_world(config_with("brought/Broken")) as world:
         assert not world.viewer.displays[-1].SUPPORTED
         assert "'brought/Broken' cannot be imported: AttributeError" in world.logged()
 
 
-def test_built_in_display_cannot_be_replaced(brought):
+def test_built_in_display_cannot_be_replaced(extension_package):
     assert extensions.extensions("linkwright.displays")["rviz_default_plugins/Grid"].value.startswith("linkwright.")
 
 
-async def test_page_feature_of_another_package_receives_messages(brought):
+async def test_page_feature_of_another_package_receives_messages(extension_package):
     async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         await client.send("greet", name="you")

@@ -85,7 +85,7 @@ class Shown:
 
 
 async def test_link_poses_follow_recorded_joint_states(tmp_path: Path) -> None:
-    """Joints without messages are at zero, or at the center of limits that exclude zero; a mimic joint follows."""
+    """Joints without messages are at zero, or at the center of limits that exclude zero. Mimic joints follow."""
     with BagReader(recorded(tmp_path / "bag", [0.5, 1.0, 7.0])) as bag:
         shown = Shown(bag)
         for second, lift in ((2, 7.0), (0, 0.5), (1, 1.0)):
@@ -116,7 +116,7 @@ async def test_recorded_transforms_take_precedence(tmp_path: Path, transforms: b
 
 
 async def test_namespaced_transforms_are_used(tmp_path: Path) -> None:
-    """At any time: those of a second before it, and static ones."""
+    """At any time, the transforms of the last second before it and static transforms are used."""
     names = ("one", "two", "laser")
     with BagWriter(tmp_path / "bag") as writer:
         for name in ("/robot1/tf", "/robot1/tf_static"):

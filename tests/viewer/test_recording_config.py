@@ -66,7 +66,7 @@ def test_recorded_simulation_opens_with_its_world(tmp_path: Path) -> None:
     shown = {display.name: display.checked for display in config.displays}
     assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "scan": True}
     assert config.options.text("Fixed Frame") == "world"
-    assert config.views.current.values["Target Frame"] == "<Fixed Frame>", "the camera stands still"
+    assert config.views.current.values["Target Frame"] == "<Fixed Frame>", "the camera does not follow the robot"
 
 
 def test_scan_without_transforms_uses_its_own_fixed_frame(tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_scan_without_transforms_uses_its_own_fixed_frame(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("storage", STORAGES)
 def test_fixed_frame_is_found_in_late_transforms(tmp_path: Path, storage: str) -> None:
-    """The robot's frames after five seconds, and the map's even later."""
+    """The robot's frames appear after five seconds, and the map's frame appears even later."""
     second = 1_000_000_000
     with BagWriter(tmp_path / "bag", storage) as writer:
         for name in ("/tf", "/tf_static"):
@@ -96,7 +96,7 @@ def test_fixed_frame_is_found_in_late_transforms(tmp_path: Path, storage: str) -
 
 
 def test_first_namespaced_robot_with_description_is_shown(tmp_path: Path) -> None:
-    """Their frames have the same names, so the data of the others is shown, but at wrong places."""
+    """The robots' frames have the same names, so the data of the other robots is shown, but at wrong poses."""
     with BagWriter(tmp_path / "bag") as writer:
         for number in range(3):
             writer.add_topic(f"/robot{number}/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])

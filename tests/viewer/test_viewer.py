@@ -52,9 +52,9 @@ async def test_opened_page_receives_messages_in_order():
     of_the_configuration = ["configuration", "description_changed", "panels", "time_state", "tools", "view_state"]
     assert kinds == [
         *("hello", "tree", "robot_scene"),
-        *whatever_is_shown,  # by the names of the features
+        *whatever_is_shown,  # sorted by the names of the features
         *of_the_configuration,
-        *("saved_views", "frame_table"),  # the table last: who has it has all
+        *("saved_views", "frame_table"),  # the table is the last opening message
     ]
     assert (first["protocol"], first["title"]) == (PROTOCOL_VERSION, "arm")
     assert transforms.revision == table["revision"]
@@ -312,11 +312,11 @@ async def test_canceled_start_leaves_no_node_or_socket(steps, times, monkeypatch
     for _ in range(steps):
         await asyncio.sleep(0)
     broken_off = start.cancel()
-    if times == 2:  # while it cleans up
+    if times == 2:  # cancel during the cleanup
         await asyncio.sleep(0)
         start.cancel()
     await asyncio.wait([start])
-    if not broken_off:  # it had started: ended as ever
+    if not broken_off:  # the viewer had started, so it is closed normally
         await world.viewer.close()
     assert listeners[0].fileno() == -1
     assert world.graph.node_names() == ["/publishers"]
@@ -387,7 +387,7 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
         async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": "identity"}) as answer:
             assert "Content-Encoding" not in answer.headers
             assert await answer.text() == "export {}"
-        (tmp_path / "assets" / "index-abc.js").unlink()  # as the build leaves them
+        (tmp_path / "assets" / "index-abc.js").unlink()  # the build creates only compressed files
         for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
             async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": accepted}) as answer:
                 assert answer.headers.get("Content-Encoding") == encoding
@@ -440,7 +440,7 @@ async def test_viewer_node_applies_node_options():
         (name,) = [node_name for node_name in world.graph.node_names() if node_name.endswith("/eyes")]
         assert name == "/robot/eyes"
         assert world.viewer.manager.fixed_frame == "tip"
-        assert world.viewer.manager.time.now_ns() == 0  # no /clock yet
+        assert world.viewer.manager.time.now_ns() == 0  # before the first /clock
         clock = world.graph.create_node("clock").create_publisher(Clock, "/clock", CLOCK_QOS)
         clock.publish(Clock(clock=Time(sec=12)))
         await world.settle()

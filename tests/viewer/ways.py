@@ -1,7 +1,7 @@
-"""Prints the files of Linkwright whose functions run on two ways, as JSON; for `tests.viewer.test_data_path_length`.
+"""Print the files of Linkwright whose functions run on two paths, as JSON, for `tests.viewer.test_data_path_length`.
 
-The ways are from the start of `linkwright view` to an open page, and from a slider of a page to the page's next joint
-positions and transforms. The process must have imported nothing of Linkwright yet: importing is part of the first way.
+The paths are from the start of `linkwright view` to an open page, and from a slider of a page to the page's next joint
+positions and transforms. The process must not have imported Linkwright, because imports are part of the first path.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ROBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
 
 
 class FunctionFiles:
-    """Records the files below a folder whose functions run, those of module code left out.
+    """Records the files below a folder whose functions run; the code of modules does not count.
 
     Args:
         folder: the folder.
@@ -53,7 +53,7 @@ class FunctionFiles:
         self._records = True
 
     def stop(self) -> list[str]:
-        """Stop recording; returns the paths of the files below the folder."""
+        """Stop recording, and return the paths of the files relative to the folder."""
         self._records = False
         return sorted(file.removeprefix(self._prefix) for file in self._found)
 
@@ -109,7 +109,7 @@ async def _main() -> None:
                     await page.send_str(json.dumps(move))
                     await _until(page, _is_stored, "joint_positions", "binary")
                     moves.append(set(files.stop()))
-                slider = sorted(set.intersection(*moves))  # what runs now and then beside them is not on the way
+                slider = sorted(set.intersection(*moves))  # code that runs only sometimes is not on the path
         view.interrupt("done")
         await viewing
     json.dump({"opening": opening, "slider": slider}, sys.stdout)

@@ -63,10 +63,10 @@ def test_duplicate_detection_is_a_false_positive():
 
 
 def test_inexact_box_counts_up_to_its_overlap():
-    shifted = (10.0, 10.0, 30.0, 25.0)  # three quarters of it
+    shifted = (10.0, 10.0, 30.0, 25.0)  # three quarters of the box
     figures = evaluate(NAMES, [objects((0, *BOX))], [detections_of((0, 0.9, *shifted))])
     assert figures.map50 == pytest.approx(1)
-    assert figures.map == pytest.approx(0.6)  # right at 0.50 to 0.75, six of ten
+    assert figures.map == pytest.approx(0.6)  # correct at the thresholds 0.50 to 0.75, which are six of ten
 
 
 def test_detection_of_ignored_object_is_not_counted():

@@ -1,4 +1,4 @@
-"""A process that behaves on the wire like Fast DDS, with a service and a client of our own.
+"""A process that behaves on the wire like Fast DDS, with a service and a client of ours.
 
 ``python -m tests.wire.fast_peer``. It serves ``/fast_echo`` and calls ``/our_echo``; both return the text of the
 request. Each reply of ``/fast_echo`` comes after a reply to another client.

@@ -52,7 +52,7 @@ class LoadPeer(Node):
         self._received_count = 0
 
     def exchange_states(self, rate: float, other: str) -> None:
-        """Publish states until the node ends, and count those of another node."""
+        """Publish states until the node ends, and count the states of another node."""
         self.create_subscription(JointState, f"/{other}/states", self._on_state, 10)
         self.create_timer(1 / rate, lambda: self._states.publish(JointState(name=["a"] * 12, position=[0.5] * 12)))
 

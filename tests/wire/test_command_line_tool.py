@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.messages import JointState, type_hash
 
-CONFIGURATIONS = pytest.importorskip("tests.wire.ros_peer", reason="there is no DDS here").CONFIGURATIONS
+CONFIGURATIONS = pytest.importorskip("tests.wire.ros_peer", reason="cyclonedds is not installed").CONFIGURATIONS
 TOOL = Path(sys.executable).with_name("cyclonedds")
 
 pytestmark = pytest.mark.skipif(not TOOL.exists(), reason="the tool is not installed")
@@ -56,7 +56,7 @@ def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
 
 
 def test_cyclonedds_typeof_shows_no_type_description(processes, tool, domain):
-    """Type descriptions are not sent: rmw_fastrtps_cpp and Humble's Cyclone DDS do not cope with ours."""
+    """Type descriptions are not sent, because rmw_fastrtps_cpp and Humble's Cyclone DDS cannot process ours."""
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 10)
     assert "struct" not in tool("typeof", "rt/joint_states", "-i", str(domain))

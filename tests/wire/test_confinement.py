@@ -15,7 +15,7 @@ from linkwright.wire.dds.settings import own_addresses
 from tests.waiting import SECONDS
 
 pytestmark = pytest.mark.skipif(
-    not sys.platform.startswith("linux"), reason="Linux alone sends packets with no time to live"
+    not sys.platform.startswith("linux"), reason="only Linux sends packets with a time to live of zero"
 )
 
 GROUP = "0xefff0001"

@@ -14,9 +14,9 @@ from linkwright.wire.dds import join
 from linkwright.wire.dds import transport as module
 from tests.waiting import SECONDS, wait_until
 
-pytest.importorskip("cyclonedds", reason="there is no DDS here")
+pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 
-on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the sockets of others are not listed")
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists other processes' sockets")
 
 
 @pytest.fixture

@@ -85,7 +85,7 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
     monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN", float("inf"))
     process = processes("ours", join_now=False)
     publishers = [process.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
-    transport = join(process.graph)  # everything to be made is asked for now
+    transport = join(process.graph)  # this requests all publishers before the transport joins
     may_join.set()
     assert transport.wait_until_ready(SECONDS)
     wait_until(lambda: announced)
@@ -128,7 +128,7 @@ def test_fifty_nodes_with_services_are_discovered(processes, programs):
 
 
 def test_type_hash_of_fast_dds_request_is_not_service_hash():
-    """Request and response each announce their own hash; with Cyclone both announce that of the service."""
+    """Request and response each announce their own hash; with Cyclone both announce the hash of the service."""
     hashes = {
         guid[:2]: [
             RemoteEndpoint(guid, 1, guid, False, topic, type_name, QoSProfile(1), {"typehash": "RIHS01_1"})

@@ -104,7 +104,7 @@ def with_invalid_data(message, value):
 def test_unserializable_latched_message_is_reported_and_others_sent(processes):
     a = processes("a", join_now=False)
     publisher = a.node.create_publisher(String, "described", LASTING)
-    publisher._copies_messages = False  # as of nodes that come with Linkwright, which hand their messages over
+    publisher._copies_messages = False  # as in Linkwright's own nodes, which do not reuse messages
     for message in (String(data="one"), with_invalid_data(String(), 5), String(data="three")):
         publisher.publish(message)
     a.join()
@@ -119,7 +119,7 @@ def test_unserializable_latched_message_is_reported_and_others_sent(processes):
 @both_wires
 def test_unserializable_queued_request_fails_and_next_is_answered(processes):
     a, b = processes("a"), processes("b")
-    a.node.handle.copies_messages = False  # as of nodes that come with Linkwright
+    a.node.handle.copies_messages = False  # as in Linkwright's own nodes
     client = a.node.create_client(SetBool, "flip")
     requests = (with_invalid_data(SetBool.Request(), "neither true nor false"), SetBool.Request(data=False))
     futures = [client.call_async(request) for request in requests]

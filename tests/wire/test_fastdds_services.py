@@ -44,7 +44,7 @@ def test_client_takes_response_with_its_identity(processes, programs, text):
     assert future.result().status_message == text
     assert not process.warnings()
     peer.end()
-    process.spin_until(lambda: not client.service_is_ready(), 5.0)  # it announced its end before its lease of 10 s
+    process.spin_until(lambda: not client.service_is_ready(), 5.0)  # the lease is 10 s
 
 
 @pytest.mark.parametrize("text", ["hej", LARGE])
@@ -132,7 +132,7 @@ def test_early_requests_get_numbers_before_first_received(monkeypatch):
     assert service.requests == [("six", 6), ("seven", 7)]
     assert not server.has_more_to_do
     server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request("eight")), 9_000_000, now))
-    assert not server.has_more_to_do  # from now on, requests have numbers
+    assert not server.has_more_to_do  # requests are numbered from now on
 
 
 def test_early_request_repeated_with_number_is_executed_once(monkeypatch):

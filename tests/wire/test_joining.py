@@ -13,7 +13,7 @@ from linkwright.wire.dds import is_available, join, unavailable_reason
 from linkwright.wire.dds.settings import max_participants
 from linkwright.wire.domain_id import MAX_DOMAIN_ID
 
-with_dds = pytest.mark.skipif(not is_available(), reason="there is no DDS here")
+with_dds = pytest.mark.skipif(not is_available(), reason="cyclonedds is not installed")
 
 
 @pytest.fixture

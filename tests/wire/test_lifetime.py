@@ -15,9 +15,9 @@ from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String, get_message
 from tests.waiting import SECONDS, wait_until
 
-pytest.importorskip("cyclonedds", reason="there is no DDS here")
+pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 
-on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 
 
 def run(text: str, seconds: float = SECONDS) -> subprocess.CompletedProcess[str]:
@@ -48,7 +48,7 @@ def test_close_leaves_no_threads_or_sockets(processes):
     process.close()
     assert threading.active_count() == threads
     assert {descriptor for descriptor in descriptors() if descriptor.startswith("socket")} == sockets
-    wait_until(lambda: kernel_threads() <= tasks)  # a thread that was joined is listed a moment longer
+    wait_until(lambda: kernel_threads() <= tasks)  # the kernel lists a joined thread a moment longer
 
 
 def test_close_twice_and_before_ready_is_allowed(processes):
@@ -109,7 +109,7 @@ def test_close_ends_wait_for_discovery(processes):
     ended = threading.Event()
 
     def wait() -> None:
-        process.transport._joined_at = time.monotonic() + 10_000.0  # discovery does not settle
+        process.transport._joined_at = time.monotonic() + 10_000.0  # the discovery does not settle
         process.transport.wait_for_discovery(10_000.0)
         process.transport.wait_until_ready(10_000.0)
         ended.set()
@@ -183,7 +183,7 @@ def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
     assert (result.returncode, result.stderr) == (0, "")
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_forked_child_does_not_participate(processes, programs):
     process = processes("ours")
@@ -204,4 +204,4 @@ def test_killed_peer_does_not_block_publisher(processes, programs):
     for _ in range(2000):
         publisher.publish(String(data="x" * 1000))
     process.close()
-    assert time.monotonic() - begin < SECONDS, "each of them would wait"
+    assert time.monotonic() - begin < SECONDS, "messages must not wait one by one"

@@ -13,7 +13,7 @@ from linkwright.wire.dds.local_sockets import multicast_port, other_processes, w
 DOMAIN = 7
 FIRST = multicast_port(DOMAIN)
 
-on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def test_other_process_is_counted_by_system_tables(processes, programs, domain):
     assert other_processes(domain) == 0
     programs("our_program", "one")
     assert other_processes(domain) == 1
-    processes("ours")  # has sockets as well, of this process
+    processes("ours")  # this process has sockets too
     assert other_processes(domain) == 1
 
 

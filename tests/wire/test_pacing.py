@@ -79,7 +79,7 @@ def test_paced_sample_has_guid_of_writer():
     ]
     assert {text.time for text in fragments} == {5_000_000_000}
     assert b"".join(text.payload for text in fragments) == LARGE
-    assert not list(parse(packets[0], WRITER[:12]))  # other participants ignore it
+    assert not list(parse(packets[0], WRITER[:12]))  # other participants ignore the packet
 
 
 class Sender:
@@ -163,7 +163,7 @@ def test_closed_writer_sends_nothing():
 
 
 def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
-    """Here, Cyclone's reader counts as one of Fast DDS, and a socket of the test listens in its place."""
+    """The test treats Cyclone's reader as a reader of Fast DDS, and listens on a socket in its place."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
         listening.bind(("127.0.0.1", 0))
         listening.settimeout(60)

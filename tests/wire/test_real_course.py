@@ -178,9 +178,9 @@ def test_word_driver_ends_on_ctrl_c(velocities, run):
 def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
     """The world is ours, and each node of the learner runs under the real rclpy.
 
-    In lesson 12, the images come with best effort. Kilted's Fast DDS sometimes does not connect two real nodes, logs
-    "Inconsistent TypeObject", and does not try again. When the nodes started at the same time, 3 of 26 runs with
-    Kilted failed; now that they start one after another, 1 of 20, whose reason was not looked at.
+    In lesson 12, the images are sent with best effort. Kilted's Fast DDS sometimes does not connect two real nodes,
+    logs "Inconsistent TypeObject", and does not try again. When the nodes started at the same time, 3 of 26 runs with
+    Kilted failed. Now the nodes start one after another, and 1 of 20 runs failed, for an unknown reason.
     """
     process = processes("ours")
     states: list[str] = []

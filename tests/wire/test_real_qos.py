@@ -125,7 +125,7 @@ def test_best_available_qos_always_matches(peers, publisher_side, subscriber_sid
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscriber_side):
-    """A deadline begins with the first message, and is not missed while messages come in time."""
+    """A deadline begins with the first message, and is not missed while messages arrive in time."""
     publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     for topic in ("/topic", "/silent"):
         publishes.ask("publisher", topic, {"deadline": 2.0})
@@ -148,7 +148,7 @@ def missed(peer, topic):
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 def test_liveliness_is_lost_and_regained(peers, publisher_side, subscriber_side):
-    """Liveliness that is asserted by hand and then runs out."""
+    """The liveliness is asserted manually, and then expires."""
     publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     by_hand = {"liveliness": "manual_by_topic", "lease": 1.0}
     publishes.ask("publisher", "/topic", by_hand)
@@ -181,7 +181,7 @@ def test_message_beyond_its_lifespan_is_not_delivered(peers, publisher_side, sub
         publishes.ask("publish", topic, "old")
     publishes.ask("publisher", "/clock", {})
     publishes.ask("keep_publishing", "/clock", 0.1)
-    subscribes = peers(subscriber_side)  # takes longer to start than the short one lives
+    subscribes = peers(subscriber_side)  # its start takes longer than the short lifespan
     subscribes.ask("subscription", "/clock", {})
     subscribes.ask_until(lambda texts: len(texts) > 10, "received", "/clock")
     for topic in ("/short", "/long"):

@@ -35,7 +35,7 @@ def real_node(programs):
     return lambda **variables: programs("real_peer", "real_node", python=PYTHON, **variables)
 
 
-def has(process, name):
+def is_discovered(process, name):
     return NodeIdentity(name, "/") in process.transport.remote_nodes()
 
 
@@ -47,7 +47,7 @@ def test_nodes_discover_each_other(processes, real_node, we_are_first):
     else:
         real = real_node()
         process = processes("ours")
-    process.spin_until(lambda: has(process, "real_node"), 2.5)
+    process.spin_until(lambda: is_discovered(process, "real_node"), 2.5)
     real.ask_until(lambda nodes: nodes == [["/", "ours"], ["/", "real_node"]], "nodes")
 
 
@@ -63,7 +63,7 @@ def test_nodes_discover_each_other_for_any_discovery_range(processes, real_node,
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
     process = processes("ours")
-    process.spin_until(lambda: has(process, "real_node"), 5.0)
+    process.spin_until(lambda: is_discovered(process, "real_node"), 5.0)
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
@@ -71,7 +71,7 @@ def test_localhost_node_is_discovered_by_earlier_subnet_node(processes, real_nod
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")
     process = processes("ours")
     real = real_node(**LOCALHOST)
-    process.spin_until(lambda: has(process, "real_node"), 10.0)
+    process.spin_until(lambda: is_discovered(process, "real_node"), 10.0)
     real.ask_until(lambda nodes: ["/", "ours"] in nodes, "nodes")
 
 
@@ -79,16 +79,16 @@ def test_domains_are_isolated(processes, real_node, domain):
     real = real_node(ROS_DOMAIN_ID=str(own_domain(2)))
     process = processes("ours")
     time.sleep(1.5)
-    assert not has(process, "real_node")
+    assert not is_discovered(process, "real_node")
     assert real.ask("nodes") == [["/", "real_node"]]
 
 
 def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node):
-    """Even the last service, which Fast DDS announces some time after the first topic."""
+    """The node also sees the last service, which Fast DDS announces some time after the first topic."""
     real_node()
     process = processes("ours")
     assert process.transport.wait_for_discovery(60)
-    assert has(process, "real_node")
+    assert is_discovered(process, "real_node")
     assert process.node.count_publishers("/from_ros") == 1
     services = dict(process.node.get_service_names_and_types_by_node("real_node", "/"))
     assert services["/flip"] == ["std_srvs/srv/SetBool"]
@@ -169,9 +169,8 @@ def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
 def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_node):
     """Without pacing, most packets of an image are lost, and they are not resent."""
     process = processes("ours")
-    process.node.create_client(
-        get_service("std_srvs/srv/SetBool"), "/flip"
-    )  # as every node of rclpy has one: with it we learn where Fast DDS listens
+    # A client, as every node of rclpy has, lets us discover the address of Fast DDS.
+    process.node.create_client(get_service("std_srvs/srv/SetBool"), "/flip")
     real = real_node()
     profile = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
     publisher = process.node.create_publisher(Image, "/frames_to_ros", profile)
@@ -185,7 +184,8 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
         while number not in came and time.monotonic() < until:
             process.executor.spin_once(timeout_sec=0.01)
             came = real.ask("received_images", "frames_to_ros")
-    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2  # discovered by then
+    # The reader is discovered before the second half is sent.
+    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2
 
 
 def test_late_subscriber_gets_latched_message(processes, real_node):
@@ -207,7 +207,7 @@ def test_endpoints_have_node_and_type_hash(processes, real_node):
     assert published["/named"] == ["std_msgs/msg/String"]
     (message,) = real.ask("hashes", "/named")
     assert type_hash(String).removeprefix("RIHS01_") in message
-    # Whose an endpoint is comes in another message than the endpoint itself.
+    # DDS announces an endpoint and its node in separate messages.
     publishers = process.node.get_publishers_info_by_topic
     process.spin_until(lambda: [info.node_name for info in publishers("/from_ros")] == ["real_node"])
 
@@ -227,9 +227,9 @@ def test_incompatible_qos_is_reported_on_both_sides(processes, real_node):
 def test_killed_real_node_disappears_before_lease_expires(processes, real_node):
     process = processes("ours")
     real = real_node()
-    process.spin_until(lambda: has(process, "real_node"))
+    process.spin_until(lambda: is_discovered(process, "real_node"))
     real.kill()
-    process.spin_until(lambda: not has(process, "real_node"), 5.0)
+    process.spin_until(lambda: not is_discovered(process, "real_node"), 5.0)
 
 
 def test_killed_real_node_is_received_again_after_restart(processes, real_node):
@@ -241,9 +241,8 @@ def test_killed_real_node_is_received_again_after_restart(processes, real_node):
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     first.kill()
     again = real_node()
-    process.spin_until(
-        lambda: publisher.get_subscription_count() == 2
-    )  # the first one's lease of 20 s is still running
+    # The lease of the first node, 20 s, has not expired.
+    process.spin_until(lambda: publisher.get_subscription_count() == 2)
     began = time.monotonic()
     for number in range(8):
         publisher.publish(String(data=str(number)))

@@ -169,7 +169,7 @@ def test_successor_of_killed_linkwright_server_answers(processes, programs, real
     ours.kill()
     process = processes("ours")
     process.node.declare_parameter("second", 1.0)
-    # What is asked before the new one is known there was asked of the one that was killed.
+    # Until the peer discovers the new node, its requests go to the killed one.
     while "second" not in ask_while_spinning(process, peer, "parameters_of", "ours"):
         pass
 

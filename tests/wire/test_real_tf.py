@@ -44,7 +44,7 @@ def transform(parent, child, x):
 
 
 def test_transform_chain_of_real_node_is_looked_up(processes, start_real_program):
-    """Look up static and moving transforms; a late listener gets the static ones, too."""
+    """Look up static and moving transforms; a late listener gets the static ones too."""
     peer = start_real_program("tf_peer")
     peer.ask("publish_transform", "/tf_static", "map", "odom", 1.0)
     process = processes("ours")

@@ -15,12 +15,12 @@ from tests.wire.values import bytes_of_size, digest
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 SEEDS = 6
-"""As constructed, the least and the most of everything, and three more."""
+"""The number of seeds: default, minimum and maximum values, and three random ones."""
 LARGE, LARGE_ONES = 8_000_000, 5
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 """The side of the publisher or client, and the side of the subscription or server."""
 OWN_BUSINESS = "rmw_dds_common/"
-"""Types of the transport, which others never see; ours are Humble's."""
+"""Types that only the transport uses; ours are Humble's."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
@@ -94,7 +94,7 @@ def test_arrays_of_eight_megabytes_arrive_complete(peers, publisher_side, subscr
     peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
     peers_by_side[subscriber_side].ask("subscribe_large", "/large")
     peers_by_side[publisher_side].ask_until(lambda count: count == 1, "subscription_count", "/large")
-    # A reader of Cyclone misses what a writer of Fast DDS says in the first moments that it knows it.
+    # A reader of Cyclone misses samples that a writer of Fast DDS sends directly after the discovery.
     while not peers_by_side[subscriber_side].ask("received_large"):
         peers_by_side[publisher_side].ask("publish_large", "/large", LARGE_ONES, 1)
     for number in range(LARGE_ONES):

@@ -10,7 +10,7 @@ from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import String, get_service, type_hash
 
-pytest.importorskip("cyclonedds", reason="there is no DDS here")
+pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 
 SetBool = get_service("std_srvs/srv/SetBool")
 DISTRIBUTIONS = ("humble", "jazzy")
@@ -127,7 +127,7 @@ def test_endpoints_announce_type_hashes_and_client_ids(processes, programs):
         assert data[0].endswith(f";typehash={type_hash(SetBool)};")
 
 
-@pytest.mark.skipif(os.environ.get("CI") == "true", reason="machines of CI may have no interface with multicast")
+@pytest.mark.skipif(os.environ.get("CI") == "true", reason="CI machines may have no multicast interface")
 @pytest.mark.parametrize("network", ["humble", "jazzy", "jazzy localhost", "localhost"])
 @pytest.mark.parametrize("we_are_first", [True, False])
 @pytest.mark.parametrize("variable", ["", "ROS_LOCALHOST_ONLY=1", "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"])

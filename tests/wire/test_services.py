@@ -116,7 +116,7 @@ def test_remote_action_is_executed(processes):
     server = ActionServer(b.node, Fibonacci, "count", execute)
     client = ActionClient(a.node, Fibonacci, "count")
     assert client.wait_for_server(SECONDS)
-    b.spin_until(lambda: b.node.count_clients("/count/_action/send_goal"))  # the server knows the client, too
+    b.spin_until(lambda: b.node.count_clients("/count/_action/send_goal"))  # the server has discovered the client too
     b.spin_until(lambda: b.node.count_clients("/count/_action/get_result"))
     b.spin_until(lambda: b.node.count_subscribers("/count/_action/feedback"))
     feedback = []

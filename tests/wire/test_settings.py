@@ -81,7 +81,7 @@ def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
 
 
 def test_localhost_range_equals_own_machine():
-    """Humble's rmw_cyclonedds then uses only the loopback interface, Jazzy's the one that Cyclone chooses."""
+    """Humble's rmw_cyclonedds then uses the loopback interface, and Jazzy's uses the one that Cyclone chooses."""
     machine = read_settings({}).configurations
     assert read_settings({"ROS_LOCALHOST_ONLY": "1"}).configurations == machine
     assert read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}).configurations == machine

@@ -12,7 +12,7 @@ from tests.wire.programs import Program
 from tests.wire.zenoh.hosts import CLOUD, DESK, DESKS_CLOUD_ADDRESS, Hosts, unsupported_reason
 
 FORGOTTEN_AFTER = 2
-"""Seconds after which Cyclone asks an address no more that does not answer; 30 by itself."""
+"""The seconds after which Cyclone stops asking an address that does not answer; 30 by default."""
 
 
 def configuration(interface: str) -> str:
@@ -27,7 +27,7 @@ def configuration(interface: str) -> str:
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(find_spec("cyclonedds") is None, reason="without DDS"),
+    pytest.mark.skipif(find_spec("cyclonedds") is None, reason="cyclonedds is not installed"),
 ]
 
 

@@ -16,7 +16,7 @@ from linkwright.wire.dds.cyclone import CycloneError
 from linkwright.wire.dds.topic_types import _table_without_descriptions
 from linkwright.wire.dds.type_descriptions import empty_type_data
 
-make_idl_struct = pytest.importorskip("cyclonedds.idl", reason="there is no DDS here").make_idl_struct
+make_idl_struct = pytest.importorskip("cyclonedds.idl", reason="cyclonedds is not installed").make_idl_struct
 Point = get_message("geometry_msgs/msg/Point")
 
 CHURN = """
@@ -162,9 +162,9 @@ def test_topic_rejected_by_cyclone_raises_error(processes):
         participant.create_topic("not a name", participant.types.message(String))
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 def test_repeated_graphs_do_not_leak_memory(domain):
-    assert float(output_of(CHURN)) < 3.0, "0.5 MB a graph, if its types were created again"
+    assert float(output_of(CHURN)) < 3.0, "creating the types again would take 0.5 MB per graph"
 
 
 @pytest.mark.slow

@@ -130,7 +130,7 @@ def test_callbacks_get_message_info(processes, wire):
     (info,) = infos
     assert info.is_remote
     assert info.publisher_gid == publisher.gid
-    assert info.publication_sequence_number == (1 if wire == "zenoh" else None)  # Cyclone does not hand it on
+    assert info.publication_sequence_number == (1 if wire == "zenoh" else None)  # Cyclone does not provide this number
     assert before <= info.source_timestamp <= info.received_timestamp <= time.time_ns()
     (endpoint,) = b.node.get_publishers_info_by_topic("/chatter")
     assert bytes(endpoint.endpoint_gid[:16]) == publisher.gid
@@ -155,7 +155,7 @@ def test_incompatible_qos_is_reported_on_both_sides(processes):
     b.node.create_subscription(String, "chatter", print, QoSProfile(5))
 
     def reported(process):
-        """Its warnings of a mismatch: one about a node of an earlier test that has not left yet may come besides."""
+        """Return the warnings about a mismatch; another one may be about a remaining node of an earlier test."""
         return [text for text in process.warnings() if "incompatible QoS" in text]
 
     b.spin_until(lambda: reported(b))
@@ -232,7 +232,7 @@ def test_messages_of_any_size_arrive(processes, size):
     assert sizes == [size] * 5
 
 
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other C libraries decide by themselves")
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="only glibc has the setting that keeps freed memory")
 def test_image_publisher_reuses_memory(processes):
     resource = pytest.importorskip("resource")
     a, b = processes("a"), processes("b")
@@ -251,7 +251,7 @@ def test_image_publisher_reuses_memory(processes):
         return resource.getrusage(resource.RUSAGE_THREAD).ru_minflt - memory_before
 
     new_pages()
-    assert new_pages() < 80 * 25  # an image has 245
+    assert new_pages() < 80 * 25  # an image has 245 pages
 
 
 def test_reliable_flood_loses_no_messages(processes, programs):
@@ -306,7 +306,7 @@ def test_best_available_qos_considers_remote_endpoints(processes):
 
 def test_shipped_message_types_can_be_described():
     """Cyclone creates a description of each type when it is first used."""
-    pytest.importorskip("cyclonedds", reason="there is no DDS here")
+    pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
     from linkwright.messages import shipped_packages
     from linkwright.wire.dds.type_descriptions import WireTypes
 

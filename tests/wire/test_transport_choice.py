@@ -75,7 +75,7 @@ def test_process_without_transport_logs_and_continues(installed):
         graph.close_threadsafe()
 
 
-@pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="there is no DDS here")
+@pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="cyclonedds is not installed")
 def test_settings_of_chosen_transport_are_checked():
     wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
     check_settings(wrong)

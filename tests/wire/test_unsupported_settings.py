@@ -17,7 +17,7 @@ SECURE = {"ROS_SECURITY_ENABLE": "true"}
 ENFORCED = {**SECURE, "ROS_SECURITY_STRATEGY": "Enforce"}
 SERVER = {"ROS_DISCOVERY_SERVER": "127.0.0.1:11811"}
 
-with_network = pytest.mark.skipif(not is_available(), reason="there is neither DDS nor Zenoh here")
+with_network = pytest.mark.skipif(not is_available(), reason="neither DDS nor Zenoh is installed")
 
 
 def codes(variables):

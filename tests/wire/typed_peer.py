@@ -29,7 +29,7 @@ class TypedPeer(Node):
         self._publishers: dict[str, Any] = {}
 
     def available_types(self, types: list[str]) -> list[str]:
-        """Return those of some types that this interpreter has."""
+        """Return the given types that this interpreter has."""
         return [name for name in types if _is_available(name)]
 
     def fields(self, name: str) -> dict[str, str]:

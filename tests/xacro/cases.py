@@ -1,8 +1,8 @@
 """Test cases in Markdown: each heading is a case, with blocks for files, arguments and the expected result.
 
-Fences: ``xacro`` is what stands inside the root element of ``main.xacro``; ``document`` is the whole of it;
-``file NAME`` is a file beside it; ``arguments`` holds ``name:=value`` lines; ``urdf`` is the expansion without its
-banner, ``diagnostics`` what is reported.
+Fences: ``xacro`` is the content of the root element of ``main.xacro``; ``document`` is the whole of this file;
+``file NAME`` is another file in the folder; ``arguments`` holds ``name:=value`` lines; ``urdf`` is the expansion
+without its banner, and ``diagnostics`` the expected diagnostics.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ BANNER_LINES = 5
 PACKAGES = {"pkg_a": "/share/pkg_a"}
 """The packages that cases may name."""
 ENVIRONMENT = {"LINKWRIGHT_TEST": "env value", "LINKWRIGHT_UNSET": None}
-"""The environment variables that cases may name; None is for one that must not be set."""
+"""The environment variables that cases may name; a variable with None must not be set."""
 
 
 @dataclass

@@ -372,7 +372,7 @@ def test_file_that_includes_itself_is_an_error(tmp_path: Path) -> None:
     assert caught.value.diagnostics[0].code == "XAC601"
 
 
-@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="there is no such device")
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no /dev/zero")
 @pytest.mark.parametrize("use", ['<xacro:include filename="/dev/zero"/>', "<a v=\"${xacro.load_yaml('/dev/zero')}\"/>"])
 def test_endless_file_is_an_error(use: str) -> None:
     assert codes(f"{ROOT}{use}</robot>")[0] in ("XML103", "XAC506")

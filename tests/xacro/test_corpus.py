@@ -1,4 +1,4 @@
-"""Whole robots: the expansions are identical to those of ros/xacro."""
+"""Whole robots: the expansions are identical to the expansions by ros/xacro."""
 
 from __future__ import annotations
 

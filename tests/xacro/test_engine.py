@@ -184,7 +184,7 @@ def test_unreadable_files_are_errors(tmp_path: Path) -> None:
 
 
 def test_bugs_of_ros_xacro_are_not_reproduced(tmp_path: Path) -> None:
-    """Bugs of ros/xacro that Linkwright does not have."""
+    """Each case is a bug of ros/xacro."""
     in_a_condition = '<x><xacro:if value="1"><xacro:attribute name="k" value="v"/></xacro:if></x>'
     assert '<x k="v"/>' in str(expand(write(tmp_path, main=in_a_condition)))
     in_a_macro = '<xacro:macro name="m"><xacro:attribute name="k" value="v"/></xacro:macro><x><xacro:m/></x>'
@@ -197,7 +197,7 @@ def test_bugs_of_ros_xacro_are_not_reproduced(tmp_path: Path) -> None:
 
 
 def test_import_of_expand_loads_no_heavy_modules() -> None:
-    """Importing the room imports no slow modules, and none that only some files need."""
+    """The room imports neither slow modules nor modules that only some files need."""
     names = loaded_by("from linkwright.xacro import expand")
     heavy = {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"}
     stands_for_less = {"ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "typing", "warnings"}

@@ -25,7 +25,7 @@ from .evaluating import evaluate
 
 LONG = 300_000
 ALIKE = [i * sys.hash_info.modulus for i in range(60_000)]
-"""Whole numbers with one hash."""
+"""Integers with equal hashes."""
 ALIKE_PAIRS = [(number, number) for number in ALIKE]
 NUMBERS = [3**12_000 - i for i in range(200)] * 1_000
 TEXTS = {
@@ -42,7 +42,7 @@ TEXTS = {
 
 
 @contextlib.contextmanager
-def soon() -> Iterator[None]:
+def ends_soon() -> Iterator[None]:
     """Check that the body ends soon, with or without an error."""
     faults = (Fault, RefusalError, TypeError, ValueError, LookupError, ArithmeticError, AttributeError)
     with ends(), contextlib.suppress(*faults):
@@ -50,7 +50,7 @@ def soon() -> Iterator[None]:
 
 
 def call_quickly(function: Callable[..., Any], *arguments: Any) -> None:
-    with soon():
+    with ends_soon():
         call(Budget(Limits()), function, list(arguments), {})
 
 
@@ -108,7 +108,7 @@ def test_math_functions_end_quickly(name: str) -> None:
 def test_colliding_keys_are_rejected(text: str) -> None:
     source = text.format(*["[i * 2305843009213693951 for i in python.range(60000)]"] * 2)
     source = source.replace("complex", "python.complex")
-    with soon(), pytest.raises(Fault, match=r"same hash|more than \d+"):
+    with ends_soon(), pytest.raises(Fault, match=r"same hash|more than \d+"):
         evaluate("${len(" + source + ")}")
 
 
@@ -123,21 +123,21 @@ def test_equal_or_few_colliding_keys_are_accepted() -> None:
 def test_colliding_keys_in_yaml_are_rejected(tmp_path: Path, form: str) -> None:
     (tmp_path / "a.yaml").write_text("".join(form.format(number) for number in ALIKE))
     text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${len(xacro.load_yaml('a.yaml'))}\"/></robot>"
-    with soon(), pytest.raises(LinkwrightError, match="60 bits"):
+    with ends_soon(), pytest.raises(LinkwrightError, match="60 bits"):
         expand(tmp_path / "a.xacro", text=text)
 
 
 def test_long_numbers_in_yaml_are_rejected(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("a: " + ":".join(["59"] * 300_000))
     text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${xacro.load_yaml('a.yaml')}\"/></robot>"
-    with soon(), pytest.raises(LinkwrightError, match="4,000 characters"):
+    with ends_soon(), pytest.raises(LinkwrightError, match="4,000 characters"):
         expand(tmp_path / "a.xacro", text=text)
 
 
 @pytest.mark.parametrize("sep", ["\\\\](a+)+b", "\\\\](a|aa)+$", "^\\\\](.*)*x[", "\\\\]((a*)*)*b"])
 def test_tokenize_ends_quickly_with_pattern_as_separator(sep: str) -> None:
     for text in ("\\" + "a" * 40, "\\" + "aa" * 5_000):
-        with soon():
+        with ends_soon():
             tokenize(text, sep)
 
 

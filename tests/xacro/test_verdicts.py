@@ -15,16 +15,16 @@ from .test_errors import CASES
 
 VERDICTS: dict[str, str | None] = json.loads((OWN.folder / "verdicts.json").read_text(encoding="utf-8"))["xacro"]
 STRICTER = {
-    "stories: an optional include whose own include is missing",  # the whole file would be left out without a word
-    "stories: a default with a quote that is never closed",  # the rest of the list would be taken for the default
+    "stories: an optional include whose own include is missing",  # ros/xacro skips the whole file silently
+    "stories: a default with a quote that is never closed",  # ros/xacro takes the rest of the list as the default
 }
-"""Mistakes that ros/xacro goes on with."""
+"""Mistakes that ros/xacro does not report."""
 WARNED_OF = {
     "warnings: ros: attribute of a number",
     "warnings: ros: dirname",
     "warnings: ros: a dot after what a method gives",
 }
-"""What ros/xacro refuses is taken here, with a warning that says so."""
+"""Cases that ros/xacro rejects, and Linkwright accepts with a warning about that."""
 
 
 def test_every_case_has_verdict() -> None:

@@ -17,7 +17,7 @@ PIECES = [
 ]
 
 PLAIN = NodeLoader.__base__
-"""PyYAML's own loader, over libyaml where it is there, which names some errors otherwise than the parser in Python."""
+"""PyYAML's loader; if PyYAML uses libyaml, some of its errors differ from those of the parser in Python."""
 
 
 def outcome(load: Any) -> str:

@@ -36,7 +36,7 @@ def robot(write):
     )
 
 
-def only(path, name, *rest, **options):
+def explain_one(path, name, *rest, **options):
     (found,) = explain(path, name, *rest, **options)
     return found
 
@@ -50,7 +50,7 @@ def attributes(found):
 
 
 def test_explain_shows_location_and_macro_calls(robot):
-    found = only(robot, "left_wheel")
+    found = explain_one(robot, "left_wheel")
     assert str(found.span) == "wheel.xacro:4:3"
     (call,) = found.calls
     assert (call.macro, str(call.span)) == ("wheel", "a.xacro:6:1")
@@ -62,7 +62,7 @@ def test_explain_shows_location_and_macro_calls(robot):
 
 
 def test_explain_shows_attributes_and_values(robot):
-    found = attributes(only(robot, "left_wheel"))
+    found = attributes(explain_one(robot, "left_wheel"))
     name = found["link.name"]
     assert (name.value, name.written, str(name.span)) == ("left_wheel", "${side}_wheel", "wheel.xacro:4:15")
     assert [facts(value) for value in found["cylinder.radius"].values] == [
@@ -73,14 +73,14 @@ def test_explain_shows_attributes_and_values(robot):
 
 
 def test_explain_shows_text_content(robot):
-    *_, note = only(robot, "left_wheel").children
+    *_, note = explain_one(robot, "left_wheel").children
     (text,) = note.texts
     assert (text.value, text.written, str(text.span)) == ("the left one", "the ${side} one", "wheel.xacro:6:11")
     assert [value.name for value in text.values] == ["side"]
 
 
 def test_block_keeps_location_and_values_of_caller(robot):
-    origin, parent = only(robot, "left_joint").children
+    origin, parent = explain_one(robot, "left_joint").children
     assert str(origin.span) == "a.xacro:6:42"
     assert [facts(value) for value in origin.attributes[0].values] == [
         ("diameter", "property", "0.1", "a.xacro:4:40", "${2*radius}")
@@ -90,13 +90,13 @@ def test_block_keeps_location_and_values_of_caller(robot):
 
 
 def test_given_argument_has_no_location(robot):
-    parent = only(robot, "left_joint", {"prefix": "his_"}).children[1]
+    parent = explain_one(robot, "left_joint", {"prefix": "his_"}).children[1]
     (value,) = parent.attributes[0].values
     assert facts(value) == ("$(arg prefix)", "argument", "'his_'", None, None)
 
 
 def test_attribute_set_by_xacro_attribute_tag_is_traced(robot):
-    extra = attributes(only(robot, "left_joint"))["joint.extra"]
+    extra = attributes(explain_one(robot, "left_joint"))["joint.extra"]
     assert (extra.value, extra.written, str(extra.span)) == ("0.1", "${y}", "wheel.xacro:10:62")
     assert [value.name for value in extra.values] == ["y"]
 
@@ -104,7 +104,7 @@ def test_attribute_set_by_xacro_attribute_tag_is_traced(robot):
 def test_provenance_of_expanded_element_matches_explain(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
-    found, same = expansion.provenance(link), only(robot, "left_wheel")
+    found, same = expansion.provenance(link), explain_one(robot, "left_wheel")
     assert (found.span, found.calls, found.attributes) == (same.span, same.calls, same.attributes)
     cylinder = next(link.elements("cylinder"))
     assert expansion.provenance(cylinder).calls == expansion.provenance(link).calls
@@ -127,7 +127,7 @@ def test_nested_calls_and_includes_are_traced(write):
 <xacro:macro name="out" params="y:=^|1"><xacro:call macro="B.in" x="${y+1}"/></xacro:macro>
 <xacro:out/>""",
     )
-    found = only(path, "deep_2")
+    found = explain_one(path, "deep_2")
     assert [(call.macro, str(call.span)) for call in found.calls] == [
         (None, "b.xacro:2:35"),
         ("in", "a.xacro:3:41"),
@@ -145,7 +145,7 @@ def test_property_values_are_those_at_evaluation(write):
 <xacro:property name="n" remove="true"/><xacro:property name="n" default="3"/><link name="l3" v="${n}"/>""",
     )
     for name, value, place in (("l1", "1", "a.xacro:2:33"), ("l2", "2", "a.xacro:3:33"), ("l3", "3", "a.xacro:4:75")):
-        (found,) = attributes(only(path, name))["link.v"].values
+        (found,) = attributes(explain_one(path, name))["link.v"].values
         assert (found.value, str(found.span)) == (value, place)
 
 
@@ -159,7 +159,7 @@ def test_keys_and_namespaces_are_traced_and_functions_are_not(write, tmp_path):
 <link name="l" a="${cfg.arm['length'][0]*N.p}" b="${sin(pi)}" c="${[i*N.p for i in cfg.arm.length]}"
  d="${'x'.join(['a']).upper()}"/>""",
     )
-    found = attributes(only(path, "l"))
+    found = attributes(explain_one(path, "l"))
     assert [(value.name, value.value) for value in found["link.a"].values] == [
         ("cfg.arm['length'][0]", "1"),
         ("N.p", "7"),
@@ -173,7 +173,7 @@ def test_keys_and_namespaces_are_traced_and_functions_are_not(write, tmp_path):
 def test_packages_and_environment_variables_are_traced(write, tmp_path, monkeypatch):
     monkeypatch.setenv("LENGTH", "3")
     path = write("a.xacro", '<link name="l" a="$(find p)/x" b="$(env LENGTH)" c="$(optenv NONE 4)"/>')
-    found = attributes(only(path, "l", packages={"p": "/share/p"}))
+    found = attributes(explain_one(path, "l", packages={"p": "/share/p"}))
     assert facts(found["link.a"].values[0]) == ("$(find p)", "package", "'/share/p'", None, None)
     assert facts(found["link.b"].values[0]) == ("$(env LENGTH)", "variable", "'3'", None, None)
     assert facts(found["link.c"].values[0])[2] == "'4'"
@@ -186,14 +186,14 @@ def test_properties_set_in_outer_scopes_are_traced(write):
 <xacro:property name="p" value="${g+1}" scope="parent"/></xacro:macro>
 <xacro:m/><link name="l" g="${g}" p="${p}"/>""",
     )
-    found = attributes(only(path, "l"))
+    found = attributes(explain_one(path, "l"))
     assert str(found["link.g"].values[0].span) == "a.xacro:2:55"
     assert facts(found["link.p"].values[0]) == ("p", "property", "2", "a.xacro:3:33", "${g+1}")
 
 
 def test_elements_with_evaluated_tag_are_traced(write):
     path = write("a.xacro", '<xacro:property name="t" value="link"/><xacro:element xacro:name="${t}" name="l${1+1}"/>')
-    found = only(path, "l2")
+    found = explain_one(path, "l2")
     assert found.element.tag == "link"
     assert found.attributes[0].written == "l${1+1}"
 
@@ -269,7 +269,7 @@ def test_explain_option_prints_json(robot, run):
 
 def test_unsaved_text_can_be_explained(write):
     text = '<robot xmlns:xacro="x"><xacro:property name="p" value="1"/><link name="l" a="${p}">t${p}</link></robot>'
-    found = only("new.xacro", "l", text=text)
+    found = explain_one("new.xacro", "l", text=text)
     assert (found.texts[0].written, found.texts[0].value) == ("t${p}", "t1")
     assert found.attributes[1].values[0].value == "1"
     expansion = expand("new.xacro", text=text)

@@ -1,4 +1,4 @@
-"""Traced attributes have locations, and tracing raises no other errors than those of Linkwright."""
+"""Traced attributes have locations, and tracing raises only Linkwright's errors."""
 
 from __future__ import annotations
 

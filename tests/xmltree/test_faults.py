@@ -208,7 +208,7 @@ def test_missing_file_permission_is_reported(tmp_path: Path, monkeypatch: pytest
     def refuse(_path: Path, _at_most: int) -> bytes:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(reader, "read_file", refuse)  # root, who runs some test machines, may read anything
+    monkeypatch.setattr(reader, "read_file", refuse)  # root, as on some test machines, may read all files
     with pytest.raises(LinkwrightError) as caught:
         parse_file(tmp_path / "a.urdf")
     assert caught.value.diagnostics[0].code == "XML103"

@@ -29,7 +29,7 @@ def test_tokens_cover_all_characters(text: str):
     token_list = [*tokens(text)]
     assert "".join(token.text for token in token_list) == text
     assert [token.start for token in token_list] == [
-        sum(len(earlier.text) for earlier in token_list[:at]) for at in range(len(token_list))
+        sum(len(earlier.text) for earlier in token_list[:index]) for index in range(len(token_list))
     ]
 
 
@@ -96,5 +96,5 @@ def test_incomplete_attributes_are_found(text, expected):
 @pytest.mark.parametrize("piece", ["<", "<!", "<![", '<a b="', "<!--", "<a '", "<a b=", '"', "<!DOCTYPE ["])
 def test_tokenizing_hostile_text_takes_linear_time(piece: str):
     """A quadratic pattern would take minutes, and the test would reach its time limit."""
-    attributes = [token.attributes() for token in tokens("<a " + piece * 200_000)]
-    assert attributes
+    attribute_lists = [token.attributes() for token in tokens("<a " + piece * 200_000)]
+    assert attribute_lists

@@ -68,7 +68,7 @@ def build(tag: str, attributes: dict[str, str], children: list[Element | Text | 
     element = Element(tag, attributes)
     for child in children:
         last = element.children[-1] if element.children else None
-        if not (isinstance(child, Text) and isinstance(last, Text)):  # side by side they would be one text
+        if not (isinstance(child, Text) and isinstance(last, Text)):  # adjacent texts would be merged
             element.children.append(child)
     return element
 

@@ -1,4 +1,4 @@
-"""Parameters of controllers: those of the current distribution are declared, those of Humble and Jazzy are read."""
+"""Parameters of controllers: the current distribution's are declared, and those of Humble and Jazzy are read."""
 
 from __future__ import annotations
 

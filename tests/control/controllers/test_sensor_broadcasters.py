@@ -121,7 +121,7 @@ async def test_pose_and_transform_are_published(stand):
     stand.states["tcp/position.x"].value = 1.0
     published: list[object] = []
     broadcaster._transforms = SimpleNamespace(is_wanted=True, publish=published.append)
-    for time_ns in (10**12, 10**6, 2 * 10**6):  # simulated time is reset after the first
+    for time_ns in (10**12, 10**6, 2 * 10**6):  # simulated time is reset after the first update
         broadcaster.update(time_ns, 0.01)
     assert [message.transforms[0].header.stamp.sec for message in published] == [1000, 0]
 

@@ -228,7 +228,7 @@ async def test_commands_with_overflowing_sum_reach_hardware(create_manager, logg
     start_controllers(controller_manager, "low")
     controller_manager.switch(["low"], [], STRICT)
     loaded = controller_manager.controllers["low"]
-    loaded.controller.commands *= 2  # the sum of both is not a number
+    loaded.controller.commands *= 2  # two commands, whose sum overflows
     loaded.controller.value = 1.5e308
     controller_manager.cycle(1, 0.01)
     assert value(controller_manager, "hip/velocity") == 1.5e308

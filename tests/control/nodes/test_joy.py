@@ -18,7 +18,7 @@ from tests.waiting import eventually
 JOY = get_message("sensor_msgs/msg/Joy")
 BUTTON, AXIS, INITIAL = 1, 2, 0x80
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a device is played by a named pipe")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the joystick is a named pipe")
 
 
 class Joystick:
@@ -30,7 +30,7 @@ class Joystick:
 
     def plug_in(self):
         os.mkfifo(self.path)
-        # Opened for both, a pipe is there for its reader at once.
+        # A pipe that is opened for reading and writing is ready for its reader at once.
         self.file = os.open(self.path, os.O_RDWR)
 
     def pull_out(self):
@@ -79,7 +79,7 @@ async def test_axes_and_buttons_match_ros(joystick, stage, joy_messages, start):
     await eventually(lambda: len(node._buttons) == 2)
     await stage.clock.advance(0.01)
     assert [(list(message.axes), list(message.buttons)) for message in joy_messages] == [([0, 0], [0, 0])], (
-        "one message of the start"
+        "the initial events are one message"
     )
     joystick.send((BUTTON, 1, 1))
     await eventually(lambda: len(joy_messages) == 2)
@@ -151,7 +151,7 @@ async def test_disconnected_joystick_releases_axes_and_buttons(joystick, stage, 
 
 
 async def test_unreadable_joystick_is_reported(tmp_path, stage, start, logged):
-    start(JoyLinuxNode, dev=str(tmp_path))  # a folder
+    start(JoyLinuxNode, dev=str(tmp_path))  # a folder is not a joystick
     (text,) = logged("WARN")
     assert text.startswith(f"the joystick {tmp_path} cannot be read: ")
 
@@ -207,7 +207,7 @@ async def test_enable_button_must_be_held(stage, start):
     assert await pilot.hold(AXES) is None
     assert await pilot.hold(AXES, 5) == (0.5, 0, 0.5)
     assert await pilot.hold(AXES) == (0, 0, 0)
-    assert await pilot.hold(AXES) is None, "it stops once"
+    assert await pilot.hold(AXES) is None, "the robot is stopped only once"
 
 
 async def test_turbo_scales_and_additional_axes(stage, start):

@@ -18,7 +18,7 @@ from linkwright.nodes import NodeOptions
 from tests.waiting import SECONDS, eventually
 
 if sys.platform == "win32":
-    pytest.skip("has no pseudo-terminals", allow_module_level=True)
+    pytest.skip("Windows has no pseudo-terminals", allow_module_level=True)
 
 import termios
 
@@ -104,7 +104,7 @@ async def test_speed_keys_change_by_ten_percent_and_print_speed(start):
     await driver.type("q", 4)
     for count in range(5, 18):
         await driver.type("z", count)
-    assert sum("u    i    o" in line for line in driver.printed) == 2, "the help comes again after fifteen changes"
+    assert sum("u    i    o" in line for line in driver.printed) == 2, "the help is printed again after fifteen changes"
 
 
 async def test_arrow_keys_stop_robot(start):
@@ -144,7 +144,7 @@ async def test_key_timeout_stops_robot(start, stage):
     await stage.clock.advance(0.2)
     assert driver.last() == (0, 0, 0, 0)
     await stage.clock.advance(5.0)
-    assert len(driver.messages) == 3, "it stops once"
+    assert len(driver.messages) == 3, "the robot is stopped only once"
 
 
 async def test_repeat_rate_republishes_velocity(start, stage):

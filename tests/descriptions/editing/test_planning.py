@@ -210,7 +210,7 @@ def test_edit_of_repeated_macro_text_is_rejected_with_side_effects(tmp_path: Pat
 
 
 def test_rejection_names_text_with_fewest_side_effects(tmp_path: Path) -> None:
-    """A length with many uses is not the reason: a sum in the macro affects only its own result."""
+    """The text of the sum in the macro is named, because it affects fewer joints than the shared length."""
     joint = '<origin xyz="${lift} 0 0"/><parent link="base"/><child link="tip"/>'
     more = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
     text = WHEELS.replace("</robot>", more)
@@ -359,7 +359,7 @@ def moved(origin: Pose, request: EditRequest) -> Pose:
 
 
 def rounded(value: Any) -> Any:
-    """Round poses and axes to the nanometre, so that robots can be compared."""
+    """Round poses and axes to the nanometer, so that robots can be compared."""
     if isinstance(value, float):
         return round(value, 7) + 0.0
     if isinstance(value, dict):

@@ -171,7 +171,7 @@ async def test_cancel_request_can_match_many_goals(stage, clock):
 
 
 async def test_newer_goal_preempts_older_goal(stage, clock):
-    """The pattern of the public example: one goal at a time, started by handle_accepted_callback."""
+    """As in the public example, handle_accepted_callback starts one goal at a time."""
     current = None
     beat = stage.server_node.create_rate(10.0)
 
@@ -308,7 +308,7 @@ async def test_actions_are_destroyed_with_node(stage):
 
 
 def test_blocking_execute_callback_works_with_multi_threaded_executor():
-    """A server whose work blocks, as most of the tutorials' do, under a multi-threaded executor."""
+    """The execute callback of the server blocks, as in most tutorials."""
     graph = Graph(threads=True, on_log=print)
     nodes = graph.create_node("server"), graph.create_node("client")
 

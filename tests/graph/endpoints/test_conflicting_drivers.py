@@ -1,4 +1,4 @@
-"""Several simultaneous commanders: sequences of commands that are a dispute, and its report."""
+"""Several simultaneous commanders: sequences of commands that contradict each other, and the report about them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.messages import get_message
 
 Twist, Stamped = get_message("geometry_msgs/msg/Twist"), get_message("geometry_msgs/msg/TwistStamped")
 Sent = tuple[float, str, float]
-"""When, in seconds, by whom, how fast."""
+"""A command: the time in seconds, the name of the publisher, and the speed."""
 
 
 def stream(sender: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:

@@ -60,7 +60,7 @@ class FakeTransport:
         self.tell = changed
 
     def watch_lost(self, lost):
-        assert self.lose is None, "it is asked for once"
+        assert self.lose is None, "the graph watches for lost publishers only once"
         self.lose = lost
 
     def close(self):

@@ -65,8 +65,8 @@ def executor(node):
         yield executor
 
 
-def spun(executor):
-    """Spin executors in daemon threads, so that a failing test does not hang the others."""
+def spin_in_thread(executor):
+    """Spin an executor in a daemon thread, so that a failing test does not block the others; return the thread."""
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()
     return thread
@@ -88,7 +88,7 @@ class TestWaiting:
         assert time.monotonic() - start >= 0.05
 
     def test_zero_timeout_does_not_block(self, executor, monkeypatch):
-        monkeypatch.setattr(threading.Condition, "wait", lambda *_: pytest.fail("it waits"))
+        monkeypatch.setattr(threading.Condition, "wait", lambda *_: pytest.fail("spin_once waits"))
         executor.spin_once(timeout_sec=0)
 
     def test_zero_timeout_runs_ready_callback(self, node, executor):
@@ -136,8 +136,8 @@ class TestWaiting:
         received = []
         node.create_subscription(String, "chatter", received.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
-        thread = spun(executor)
-        wait_until(lambda: is_waiting(thread))  # which has no end of its own
+        thread = spin_in_thread(executor)
+        wait_until(lambda: is_waiting(thread))  # without a timeout
         publisher.publish(String())
         wait_until(lambda: received)
         executor.shutdown()
@@ -264,7 +264,7 @@ class TestFaults:
 class TestShutdown:
     def test_shutdown_ends_spin_in_another_thread(self, node, executor):
         node.create_timer(10_000.0, lambda: None)
-        thread = spun(executor)
+        thread = spin_in_thread(executor)
         wait_until(lambda: is_waiting(thread))
         assert executor.shutdown() is True
         thread.join(SECONDS)
@@ -283,7 +283,7 @@ class TestShutdown:
             ended.append(1)
 
         node.create_timer(0.01, work)
-        thread = spun(executor)
+        thread = spin_in_thread(executor)
         assert begun.wait(SECONDS)
         assert executor.shutdown(timeout_sec=0.01) is False
         threading.Timer(0.05, may_end.set).start()
@@ -409,7 +409,7 @@ class TestGroups:
         publishers = [node.create_publisher(String, topic, 10) for topic in ("one", "two", "three")]
         with MultiThreadedExecutor(4) as executor:
             executor.add_node(node)
-            thread = spun(executor)
+            thread = spin_in_thread(executor)
             for publisher in publishers * 5:
                 publisher.publish(String())
             wait_until(lambda: len(peaks) == 15)
@@ -431,7 +431,7 @@ class TestGroups:
         publishers = [node.create_publisher(String, topic, 10) for topic in ("one", "two")]
         with MultiThreadedExecutor(4) as executor:
             executor.add_node(node)
-            thread = spun(executor)
+            thread = spin_in_thread(executor)
             for publisher in publishers * 5:
                 publisher.publish(String())
             wait_until(lambda: len(peaks) == 10)
@@ -451,7 +451,7 @@ class TestGroups:
         publisher = node.create_publisher(String, "chatter", 10)
         with MultiThreadedExecutor(3) as executor:
             executor.add_node(node)
-            thread = spun(executor)
+            thread = spin_in_thread(executor)
             for _ in range(3):
                 publisher.publish(String())
             wait_until(lambda: len(passed) == 3)
@@ -464,7 +464,7 @@ class TestGroups:
         publisher = node.create_publisher(String, "chatter", 1000)
         with MultiThreadedExecutor(4) as executor:
             executor.add_node(node)
-            thread = spun(executor)
+            thread = spin_in_thread(executor)
             for number in range(500):
                 publisher.publish(String(data=str(number)))
             wait_until(lambda: len(received) == 500)

@@ -26,13 +26,13 @@ TRIGGER = get_service("std_srvs/srv/Trigger")
 FIBONACCI = get_action("example_interfaces/action/Fibonacci")
 
 
-class Asking:
-    """Two nodes: a server of a service and an action, and one with a timer whose callback asks it once.
+class CallingScene:
+    """Two nodes: a server of a service and an action, and a client whose timer's callback calls one of them.
 
     Attributes:
-        errors: what was logged as errors.
-        client: of the service.
-        action: client of the action.
+        errors: the texts of logged errors.
+        client: the client of the service.
+        action: the client of the action.
     """
 
     def __init__(
@@ -46,17 +46,17 @@ class Asking:
         self._graph = Graph(threads=True, on_log=self._heard)
         self._nodes = [
             self._graph.create_node(name, parameters=parameters, start_parameter_services=False, enable_rosout=False)
-            for name in ("server", "make_scene")
+            for name in ("server", "client")
         ]
-        server, make_scene = self._nodes
+        server, client = self._nodes
         server.create_service(TRIGGER, "ask", lambda _, response: response)
         self._server = ActionServer(server, FIBONACCI, "count", self._count)
-        self.client = make_scene.create_client(TRIGGER, "ask", callback_group=client_group)
-        self.action = ActionClient(make_scene, FIBONACCI, "count", callback_group=client_group)
+        self.client = client.create_client(TRIGGER, "ask", callback_group=client_group)
+        self.action = ActionClient(client, FIBONACCI, "count", callback_group=client_group)
         self.executor = executor()
 
     def run(self, ask: Callable[[], Any], *, seconds: float = SECONDS) -> bool:
-        """Run a callback of the default group of the node; returns whether it ended in time."""
+        """Run a callback in the client's default group, and return whether it ended in time."""
         ended = threading.Event()
 
         def callback() -> None:
@@ -86,12 +86,12 @@ class Asking:
 
 @pytest.fixture
 def make_scene(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return a function that creates an `Asking`."""
+    """Return a function that creates a `CallingScene`."""
     monkeypatch.setattr(self_waits, "_reported", set())
-    scenes: list[Asking] = []
+    scenes: list[CallingScene] = []
 
-    def make(**options: Any) -> Asking:
-        scenes.append(Asking(**options))
+    def make(**options: Any) -> CallingScene:
+        scenes.append(CallingScene(**options))
         return scenes[-1]
 
     yield make
@@ -108,7 +108,7 @@ def test_call_in_own_callback_group_is_reported_once_with_both_locations(make_sc
 
     assert asks.run(ask)
     (error,) = asks.errors
-    callback = Asking.run.__code__.co_firstlineno
+    callback = CallingScene.run.__code__.co_firstlineno
     assert f"callback 'callback' ({__file__}:{callback + 4})" in error
     assert f" waits at {__file__}:{ask.__code__.co_firstlineno + 2} for the client of service '/ask'" in error
     assert "mutually exclusive" in error

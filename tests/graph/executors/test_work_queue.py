@@ -30,7 +30,7 @@ class InterruptedAt:
         self.before = sys.gettrace()
 
     def __enter__(self) -> None:
-        sys._getframe().f_trace_opcodes = True  # Python 3.12 looks at it only in `settrace`
+        sys._getframe().f_trace_opcodes = True  # Python 3.12 reads this attribute only in `settrace`
         sys.settrace(self._trace)
 
     def __exit__(self, *_: object) -> None:
@@ -40,7 +40,7 @@ class InterruptedAt:
         if frame.f_code.co_filename == __file__:
             return None
         frame.f_trace_opcodes = True
-        if event == "opcode" and frame.f_lasti in behind_looks_for_signals(frame.f_code):
+        if event == "opcode" and frame.f_lasti in signal_check_offsets(frame.f_code):
             self.left -= 1
             if self.left == 0:
                 raise KeyboardInterrupt
@@ -48,7 +48,7 @@ class InterruptedAt:
 
 
 @cache
-def behind_looks_for_signals(code: CodeType) -> frozenset[int]:
+def signal_check_offsets(code: CodeType) -> frozenset[int]:
     """Return the offsets at which Python checks for signals: the first, and those after calls and backward jumps."""
     instructions = list(dis.get_instructions(code))
     return frozenset(
@@ -69,7 +69,7 @@ def test_interrupt_during_wait_raises_keyboard_interrupt_and_keeps_queue() -> No
             queue.add(moment)
             assert queue.take() == moment
         else:
-            break  # the wait was over before
+            break  # the wait ended before this moment
     assert moment > 10
     thread = threading.Thread(target=queue.wait, args=(None,), daemon=True)
     thread.start()

@@ -1,4 +1,4 @@
-"""Nodes of other processes that have the name of one of ours."""
+"""Nodes of other processes that have the name of a node of this process."""
 
 from __future__ import annotations
 

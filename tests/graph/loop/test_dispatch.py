@@ -109,7 +109,7 @@ def test_dispatch_order_is_reproducible(seed):
 
 
 async def test_coroutines_of_node_run_one_at_a_time(graph):
-    """The default group, which runs one at a time like rclpy's mutually exclusive one."""
+    """The default group runs one coroutine at a time, as rclpy's mutually exclusive group does."""
     node, other = graph.create_node("node"), graph.create_node("other")
     gates, order = deque(asyncio.Event() for _ in range(3)), []
 
@@ -173,7 +173,7 @@ async def test_callback_groups_apply_across_nodes(graph, make):
 
 
 async def test_coroutine_can_call_service_of_same_node(graph):
-    """With rclpy's groups this would wait forever."""
+    """With rclpy's callback groups, this call would wait forever."""
     node = graph.create_node("node")
     node.create_service(Trigger, "inner", lambda _request, response: response, callback_group=FREE_GROUP)
     client = node.create_client(Trigger, "inner")
@@ -287,7 +287,7 @@ def test_callbacks_wait_for_dispatcher():
 
 
 class Collecting:
-    """A dispatcher that does nothing by itself."""
+    """A dispatcher that only collects its entities and alarms."""
 
     def __init__(self):
         self.entities, self.alarms = deque(), []
@@ -357,7 +357,7 @@ def test_blocking_subscriber_does_not_delay_others():
 
 
 async def test_close_leaves_no_threads_tasks_or_objects():
-    """No thread, no task, no alarm, no object."""
+    """Also no alarms are left."""
     threads, loop = set(threading.enumerate()), asyncio.get_running_loop()
     graph = Graph(on_log=print)
     left = _busy_nodes(graph)

@@ -100,7 +100,7 @@ async def _value(future):
 
 
 async def test_executor_steps_coroutine_inside_event_loop():
-    """A coroutine in rclpy's executors yields the future that it awaits."""
+    """In rclpy's executors, a coroutine yields the future that it awaits."""
     future = Future()
     coroutine = _value(future)
     with StepsByExecutor():

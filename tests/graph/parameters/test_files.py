@@ -130,7 +130,7 @@ def test_patterns_apply_in_order_of_appearance():
     ],
 )
 def test_unsupported_list_is_skipped_and_rest_is_read(value, message):
-    """As in the example of gpio_controllers: rcl has no type for lists of mappings."""
+    """rcl has no type for lists of mappings, which the example of gpio_controllers contains."""
     any_node = f"/**:\n  ros__parameters:\n    first: 1\n    a:\n      b: {value}\n      c: [2]\n"
     rules = read(f"{any_node}x:\n  ros__parameters: {{y: 3}}\n")
     assert rules.for_node("/x") == {"first": 1, "a.c": [2], "y": 3}

@@ -27,7 +27,7 @@ TimeMessage = get_message("builtin_interfaces/msg/Time")
 SECOND = 1_000_000_000
 
 
-def at(seconds):
+def clock_at(seconds):
     return ClockMessage(clock=TimeMessage(sec=int(seconds), nanosec=round(seconds % 1 * SECOND)))
 
 
@@ -193,7 +193,7 @@ def simulated(graph):
     """Return a node with simulated time, and a function that sets that time."""
     node = graph.create_node("simulated", parameters={"use_sim_time": True})
     publisher = graph.create_node("simulator").create_publisher(ClockMessage, "/clock", 10)
-    return node, lambda seconds: publisher.publish(at(seconds))
+    return node, lambda seconds: publisher.publish(clock_at(seconds))
 
 
 class TestSimulatedTime:
@@ -211,7 +211,7 @@ class TestSimulatedTime:
         publisher = graph.create_node("simulator").create_publisher(ClockMessage, "/clock", 10)
         assert publisher.get_subscription_count() == 0
         node.set_parameters([Parameter("use_sim_time", value=True)])
-        publisher.publish(at(7))
+        publisher.publish(clock_at(7))
         assert node.get_clock().now_ns() == 7 * SECOND
         node.set_parameters([Parameter("use_sim_time", value=False)])
         assert publisher.get_subscription_count() == 0
@@ -258,7 +258,7 @@ class TestSimulatedTime:
         await clock.advance(10.0)
         assert calls == []
         assert timer.time_until_next_call() == 600_000_000
-        publisher.publish(at(0.5))
+        publisher.publish(clock_at(0.5))
         node.set_parameters([Parameter("use_sim_time", value=False)])
         await clock.advance(0.05)
         assert calls == []

@@ -18,7 +18,7 @@ MILLISECOND = 1_000_000
 async def alarms() -> FineAlarms:
     fine = fine_alarms(asyncio.get_running_loop())
     if fine is None:
-        pytest.skip("event loops of this system wait by the microsecond themselves")
+        pytest.skip("this system's event loops wait with a resolution of microseconds")
     return fine
 
 
@@ -40,7 +40,7 @@ def test_each_event_loop_has_its_own_alarms():
         fine.call_at(time.monotonic_ns(), was_called.set)
         await asyncio.wait_for(was_called.wait(), 20)
 
-    for _ in range(20):  # most are made where the one before was
+    for _ in range(20):  # most loops get the address of the previous one
         asyncio.run(called())
         gc.collect()
 
@@ -127,7 +127,7 @@ def test_timer_file_is_closed_with_event_loop(monkeypatch):
     loop.close()
     del loop
     if not is_fine:
-        pytest.skip("event loops of this system wait by the microsecond themselves")
+        pytest.skip("this system's event loops wait with a resolution of microseconds")
     gc.collect()
     assert gone() is None
     assert watched

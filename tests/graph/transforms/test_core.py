@@ -32,7 +32,7 @@ def stamped(parent, child, seconds=0.0, x=0.0, yaw=0.0):
     return message
 
 
-def at(seconds):
+def time_at(seconds):
     return Time(seconds=seconds)
 
 
@@ -77,12 +77,12 @@ def test_number_is_rejected_as_time(buffer):
 
 def test_poses_are_interpolated_between_stamps(buffer):
     fill(buffer, stamped("a", "b", 1, x=0.0, yaw=0.0), stamped("a", "b", 3, x=4.0, yaw=pi / 2))
-    assert x_of(buffer, "a", "b", at(1.5)) == pytest.approx(1.0)
-    rotation = buffer.lookup_transform_core("a", "b", at(2.0)).transform.rotation
+    assert x_of(buffer, "a", "b", time_at(1.5)) == pytest.approx(1.0)
+    rotation = buffer.lookup_transform_core("a", "b", time_at(2.0)).transform.rotation
     assert (rotation.z, rotation.w) == (pytest.approx(sin(pi / 8)), pytest.approx(cos(pi / 8)))
-    assert [x_of(buffer, "a", "b", at(time)) for time in (1.0, 3.0)] == [0.0, 4.0]
+    assert [x_of(buffer, "a", "b", time_at(time)) for time in (1.0, 3.0)] == [0.0, 4.0]
     assert x_of(buffer, "a", "b") == 4.0
-    assert buffer.lookup_transform_core("a", "b", at(2.0).to_msg()).transform.translation.x == pytest.approx(2.0)
+    assert buffer.lookup_transform_core("a", "b", time_at(2.0).to_msg()).transform.translation.x == pytest.approx(2.0)
 
 
 def test_interpolation_takes_shorter_rotation():
@@ -96,8 +96,8 @@ def test_interpolation_takes_shorter_rotation():
 def test_reparented_frame_keeps_earlier_poses(buffer):
     fill(buffer, stamped("a", "c", 1, x=1.0), stamped("b", "c", 3, x=9.0), stamped("a", "b", 1, x=5.0))
     fill(buffer, stamped("a", "b", 3, x=5.0))
-    assert x_of(buffer, "a", "c", at(2.0)) == 1.0
-    assert x_of(buffer, "a", "c", at(3.0)) == 14.0
+    assert x_of(buffer, "a", "c", time_at(2.0)) == 1.0
+    assert x_of(buffer, "a", "c", time_at(3.0)) == 14.0
 
 
 def test_extrapolation_is_rejected_like_tf2(buffer):
@@ -119,17 +119,17 @@ def test_extrapolation_is_rejected_like_tf2(buffer):
         ),
     ):
         with pytest.raises(ExtrapolationException) as caught:
-            buffer.lookup_transform_core("map", "base", at(time))
+            buffer.lookup_transform_core("map", "base", time_at(time))
         assert str(caught.value) == text
-        assert buffer.can_transform_core("map", "base", at(time)) == (False, text)
+        assert buffer.can_transform_core("map", "base", time_at(time)) == (False, text)
     with pytest.raises(ExtrapolationException) as caught:
-        buffer.lookup_transform_core("base", "arm", at(10.5))
+        buffer.lookup_transform_core("base", "arm", time_at(10.5))
     assert str(caught.value) == (
         "Lookup would require extrapolation at time 10.500000, but only time 10.000000 is in the buffer, when looking "
         "up transform from frame [arm] to frame [base]"
     )
     with pytest.raises(ExtrapolationException, match=r"from frame .map. to frame .arm."):
-        buffer.lookup_transform_core("arm", "map", at(10.5))
+        buffer.lookup_transform_core("arm", "map", time_at(10.5))
 
 
 def test_latest_common_time_is_of_slowest_frame(buffer):
@@ -137,40 +137,40 @@ def test_latest_common_time_is_of_slowest_frame(buffer):
     transform = buffer.lookup_transform_core("map", "arm", LATEST)
     assert transform.header.stamp.sec == 3
     assert transform.transform.translation.x == pytest.approx(13.0)
-    assert buffer.get_latest_common_time("map", "arm") == at(3)
-    assert buffer.get_latest_common_time("arm", "base") == at(3)
-    assert buffer.get_latest_common_time("base", "base") == at(5)
+    assert buffer.get_latest_common_time("map", "arm") == time_at(3)
+    assert buffer.get_latest_common_time("arm", "base") == time_at(3)
+    assert buffer.get_latest_common_time("base", "base") == time_at(5)
     fill(buffer, stamped("base", "leg"), static=True)
-    assert buffer.get_latest_common_time("arm", "leg") == at(3)
+    assert buffer.get_latest_common_time("arm", "leg") == time_at(3)
     assert buffer.get_latest_common_time("base", "leg") == LATEST
 
 
 def test_static_transforms_hold_at_all_times(buffer):
     fill(buffer, stamped("base", "camera", 100, x=1.0), static=True)
-    assert [x_of(buffer, "base", "camera", at(time)) for time in (0, 1, 1000)] == [1.0, 1.0, 1.0]
-    assert buffer.lookup_transform_core("base", "camera", at(7)).header.stamp.sec == 7
+    assert [x_of(buffer, "base", "camera", time_at(time)) for time in (0, 1, 1000)] == [1.0, 1.0, 1.0]
+    assert buffer.lookup_transform_core("base", "camera", time_at(7)).header.stamp.sec == 7
     fill(buffer, stamped("base", "camera", 1, x=2.0), static=True)
-    assert x_of(buffer, "base", "camera", at(5)) == 2.0
+    assert x_of(buffer, "base", "camera", time_at(5)) == 2.0
     fill(buffer, stamped("base", "camera", 3, x=3.0))
     assert x_of(buffer, "base", "camera") == 3.0
     with pytest.raises(ExtrapolationException):
-        x_of(buffer, "base", "camera", at(5))
+        x_of(buffer, "base", "camera", time_at(5))
 
 
 def test_time_travel_uses_fixed_frame(buffer):
     fill(buffer, *(stamped("world", "robot", time, x=float(time)) for time in range(1, 6)))
     fill(buffer, stamped("world", "other", 1, x=100.0), stamped("world", "other", 5, x=100.0))
-    transform = buffer.lookup_transform_full_core("robot", at(4), "robot", at(1.5), "world")
+    transform = buffer.lookup_transform_full_core("robot", time_at(4), "robot", time_at(1.5), "world")
     assert transform.transform.translation.x == pytest.approx(-2.5)
     assert (transform.header.frame_id, transform.child_frame_id, transform.header.stamp.sec) == ("robot", "robot", 4)
-    assert buffer.can_transform_full_core("robot", at(4), "other", at(2), "world") == (True, "")
-    possible, reason = buffer.can_transform_full_core("robot", at(40), "other", at(2), "world")
+    assert buffer.can_transform_full_core("robot", time_at(4), "other", time_at(2), "world") == (True, "")
+    possible, reason = buffer.can_transform_full_core("robot", time_at(40), "other", time_at(2), "world")
     assert not possible
     assert "into the future" in reason
-    possible, reason = buffer.can_transform_full_core("robot", at(4), "other", at(2), "gone")
+    possible, reason = buffer.can_transform_full_core("robot", time_at(4), "other", time_at(2), "gone")
     assert reason == 'Invalid frame ID "gone" passed to canTransform argument fixed_frame - frame does not exist'
     with pytest.raises(LookupException, match='"gone" passed to lookupTransform argument fixed_frame does not exist'):
-        buffer.lookup_transform_full_core("robot", at(4), "other", at(2), "gone")
+        buffer.lookup_transform_full_core("robot", time_at(4), "other", time_at(2), "gone")
 
 
 def test_unknown_and_unconnected_frames_are_rejected(buffer):
@@ -200,7 +200,7 @@ def test_unknown_and_unconnected_frames_are_rejected(buffer):
             ),
         ),
     ):
-        for time in (LATEST, at(1)):
+        for time in (LATEST, time_at(1)):
             with pytest.raises(kind) as caught:
                 buffer.lookup_transform_core(*call, time)
             assert str(caught.value) == text
@@ -216,7 +216,7 @@ def test_unknown_and_unconnected_frames_are_rejected(buffer):
 
 def test_frame_loop_is_reported(buffer):
     fill(buffer, stamped("a", "b", 1), stamped("b", "c", 1), stamped("c", "a", 1), stamped("x", "y", 1))
-    for time in (LATEST, at(1)):
+    for time in (LATEST, time_at(1)):
         with pytest.raises(LookupException, match=r"it contains a loop.\nFrame b exists"):
             buffer.lookup_transform_core("x", "b", time)
 
@@ -272,8 +272,8 @@ def test_quaternion_must_have_unit_length(buffer, logged):
 
 def test_old_data_is_ignored_and_out_of_order_data_sorted(buffer, logged):
     fill(buffer, stamped("a", "b", 100, x=1.0), stamped("a", "b", 95, x=2.0), stamped("a", "b", 98, x=3.0))
-    assert [x_of(buffer, "a", "b", at(time)) for time in (95, 98, 100)] == [2.0, 3.0, 1.0]
-    assert x_of(buffer, "a", "b", at(99)) == pytest.approx(2.0)
+    assert [x_of(buffer, "a", "b", time_at(time)) for time in (95, 98, 100)] == [2.0, 3.0, 1.0]
+    assert x_of(buffer, "a", "b", time_at(99)) == pytest.approx(2.0)
     fill(buffer, stamped("a", "b", 98, x=3.0))
     assert logged == []
     fill(buffer, *(stamped("a", "b", 89, x=4.0) for _ in range(9)))
@@ -293,8 +293,8 @@ def test_data_older_than_cache_time_is_dropped(logged):
     for tick in range(3000):
         buffer.set_transform(stamped("a", "b", 1 + tick * 0.01, x=float(tick)), "me")
     with pytest.raises(ExtrapolationException, match="into the past"):
-        buffer.lookup_transform_core("a", "b", at(28.0))
-    assert x_of(buffer, "a", "b", at(29.5)) == pytest.approx(2850.0)
+        buffer.lookup_transform_core("a", "b", time_at(28.0))
+    assert x_of(buffer, "a", "b", time_at(29.5)) == pytest.approx(2850.0)
     assert "rate: 100." in buffer.all_frames_as_yaml()
 
 
@@ -320,8 +320,8 @@ def test_all_frames_are_printed_as_text_yaml_and_dot(buffer):
         "camera: \n  parent: 'base'\n  broadcaster: 'me'\n  rate: 10000.000\n  most_recent_transform: 0.000000\n"
         "  oldest_transform: 0.000000\n  buffer_length: 0.000\n"
     )
-    assert "  transform_delay: 1.500\n" in buffer._frameYAML(at(4.5))
-    assert '"map" -> "base"[label="Broadcaster: me\\nAverage rate: 1.000 Hz' in buffer._allFramesAsDot(at(4))
+    assert "  transform_delay: 1.500\n" in buffer._frameYAML(time_at(4.5))
+    assert '"map" -> "base"[label="Broadcaster: me\\nAverage rate: 1.000 Hz' in buffer._allFramesAsDot(time_at(4))
     assert buffer._getFrameStrings() == ["base", "map", "camera"]
     assert buffer._frameExists("map")
     assert not buffer._frameExists("gone")
@@ -340,14 +340,14 @@ def test_chain_contains_frames_between_two_frames(buffer):
 
 def test_velocity_is_computed_from_poses(buffer):
     fill(buffer, *(stamped("world", "robot", time, x=3.0 * time, yaw=0.1 * time) for time in range(6)))
-    linear, angular = buffer.lookupVelocityCore("robot", "world", at(3), Duration(seconds=2))
+    linear, angular = buffer.lookupVelocityCore("robot", "world", time_at(3), Duration(seconds=2))
     assert (angular[2], linear[2]) == (pytest.approx(0.1), pytest.approx(0.0))
     whole = buffer.lookupVelocityFullCore(
-        "robot", "world", "world", (0.0, 0.0, 0.0), "robot", at(3), Duration(seconds=2)
+        "robot", "world", "world", (0.0, 0.0, 0.0), "robot", time_at(3), Duration(seconds=2)
     )
     assert whole == (linear, angular)
     fill(buffer, *(stamped("world", "cart", time, x=3.0 * time) for time in range(6)))
-    linear, angular = buffer.lookupVelocityCore("cart", "world", at(0), Duration(seconds=4, nanoseconds=1_000_000))
+    linear, angular = buffer.lookupVelocityCore("cart", "world", time_at(0), Duration(seconds=4, nanoseconds=1_000_000))
     assert linear == pytest.approx((3.0, 0.0, 0.0), abs=0.01)
     assert angular == pytest.approx((0.0, 0.0, 0.0))
 
@@ -357,7 +357,7 @@ def test_messages_can_contain_arrays(buffer):
     buffer.update(TFMessage(batch=TransformBatch(("a", "b"), ("b", "c"), 5 * SECOND, poses)), static=False)
     assert x_of(buffer, "a", "c") == 3.0
     buffer.update(TFMessage(transforms=[stamped("a", "b", 6, x=7.0), stamped("b", "c", 7, x=0.5)]), static=False)
-    assert buffer.get_latest_common_time("a", "c") == at(6)
+    assert buffer.get_latest_common_time("a", "c") == time_at(6)
 
 
 pose = (

@@ -15,7 +15,7 @@ import pytest
 from linkwright.launch.engine import guardian_program
 from tests.waiting import SECONDS
 
-pytestmark = pytest.mark.skipif(not hasattr(os, "killpg"), reason="there are no process groups here")
+pytestmark = pytest.mark.skipif(not hasattr(os, "killpg"), reason="this system has no process groups")
 MARK = "LINKWRIGHT_GUARDED"
 NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -81,7 +81,9 @@ def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: 
     assert process.poll() is None
 
 
-@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="other processes' environments cannot be read here")
+@pytest.mark.skipif(
+    not Path("/proc/self/environ").exists(), reason="the environments of other processes are not readable"
+)
 def test_guardian_finds_unreported_processes_by_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     marked, other = start(**{MARK: "mine"}), start(**{MARK: "theirs"})
     guard(monkeypatch, "", "mine")

@@ -1,4 +1,4 @@
-"""No process or thread remains after a launch, however it ends."""
+"""No process or thread remains after a launch, regardless of its end."""
 
 from __future__ import annotations
 
@@ -183,7 +183,7 @@ class TestCounts:
     async def test_launch_leaves_no_threads_or_processes(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv("LINKWRIGHT_DDS")
         me = psutil.Process()
-        await launch()  # what is made once and kept, is made
+        await launch()  # creates the objects that all launches share
         threads, children = set(threading.enumerate()), {child.pid for child in me.children(recursive=True)}
         counts: list[tuple[int, int]] = []
 
@@ -198,7 +198,7 @@ class TestCounts:
             TimerAction(period=1.5, actions=[OpaqueFunction(function=look), Shutdown()]),
         )
         assert result.succeeded, result.err
-        assert counts[0][1] >= len(children) + 2  # the process and the guardian
+        assert counts[0][1] >= len(children) + 2  # the program and the guardian
 
         def left() -> list[object]:
             ours = [thread for thread in threading.enumerate() if thread not in threads and not _is_pooled(thread)]
@@ -221,7 +221,7 @@ class TestGuardian:
         guardian.watch(1)
         guardian.close()
         assert process.returncode == 0
-        guardian.close()  # a second time does nothing
+        guardian.close()  # a second call has no effect
         assert guardian.start_and_mark({})[MARK]
         assert guardian._process is None
 

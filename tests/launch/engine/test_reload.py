@@ -62,7 +62,7 @@ class Bench:
     async def until(self, condition: Callable[[], bool]) -> None:
         await eventually(condition, what=lambda: self.err)
 
-    async def shows(self, link: str) -> None:
+    async def wait_until_shown(self, link: str) -> None:
         await self.until(lambda: f'<link name="{link}"/>' in self.description())
 
     async def watching(self) -> None:
@@ -113,27 +113,27 @@ async def running(path: Path, *arguments: str, viewer: bool = True, delay: float
 async def test_saved_file_reaches_running_node(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         for link in ("b", "c", "d"):
             path.write_text(model(link))
-            await bench.shows(link)
+            await bench.wait_until_shown(link)
         assert "reloaded" in bench.err
 
 
 async def test_node_started_later_receives_reloaded_description(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path, delay=0.2) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text(model("b"))
-        await bench.shows("b")
+        await bench.wait_until_shown("b")
 
 
 async def test_file_replaced_by_rename_is_reloaded(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         for link in ("b", "c"):
             path.rename(path.with_suffix(".bak"))
@@ -141,7 +141,7 @@ async def test_file_replaced_by_rename_is_reloaded(write) -> None:
             new = path.with_suffix(".new")
             new.write_text(model(link))
             new.replace(path)
-            await bench.shows(link)
+            await bench.wait_until_shown(link)
         assert "error" not in bench.err
 
 
@@ -152,29 +152,29 @@ async def test_include_behind_symlink_is_watched(write, tmp_path: Path) -> None:
     link.symlink_to(real)
     path = write("share/r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="part.xacro"/></robot>')
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         real.write_text(f'<robot {XACRO}><link name="b"/></robot>')
-        await bench.shows("b")
+        await bench.wait_until_shown("b")
 
 
 async def test_new_include_is_watched(write) -> None:
     path = write("r.xacro", model("a"))
     part = write("parts/part.xacro", f'<robot {XACRO}><link name="b"/></robot>')
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text(f'<robot name="r" {XACRO}><xacro:include filename="parts/part.xacro"/></robot>')
-        await bench.shows("b")
+        await bench.wait_until_shown("b")
         await bench.watching()
         part.write_text(f'<robot {XACRO}><link name="c"/></robot>')
-        await bench.shows("c")
+        await bench.wait_until_shown("c")
 
 
 async def test_broken_file_keeps_last_valid_robot_until_fixed(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text(BROKEN)
         await bench.until(lambda: bool(bench.findings()))
@@ -185,7 +185,7 @@ async def test_broken_file_keeps_last_valid_robot_until_fixed(write) -> None:
         assert bench.err.count("error[XAC") == 1
         assert '<link name="a"/>' in bench.description()
         path.write_text(model("c"))
-        await bench.shows("c")
+        await bench.wait_until_shown("c")
         await bench.until(lambda: not bench.findings())
         assert "repaired" in bench.err
 
@@ -193,7 +193,7 @@ async def test_broken_file_keeps_last_valid_robot_until_fixed(write) -> None:
 async def test_description_with_two_roots_is_rejected(write) -> None:
     path = write("r.urdf", '<robot name="r"><link name="a"/></robot>')
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text('<robot name="r"><link name="a"/><link name="b"/></robot>')
         await bench.until(lambda: bool(bench.findings()))
@@ -204,13 +204,13 @@ async def test_description_with_two_roots_is_rejected(write) -> None:
 async def test_deleted_file_is_reported_and_reloaded_when_recreated(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         path.unlink()
         await bench.until(lambda: bool(bench.findings()))
         assert '<link name="a"/>' in bench.description()
         path.write_text(model("b"))
-        await bench.shows("b")
+        await bench.wait_until_shown("b")
 
 
 @pytest.mark.parametrize("start", [BROKEN, '<robot name="r"><link name="a"/><link name="b"/></robot>', "<robot", ""])
@@ -222,11 +222,11 @@ async def test_model_broken_at_start_is_loaded_once_fixed(write, start: str) -> 
         assert bench.description() == ""
         await bench.watching()
         path.write_text(model("good"))
-        await bench.shows("good")
+        await bench.wait_until_shown("good")
         await bench.until(lambda: not bench.findings())
         await bench.watching()
         path.write_text(model("better"))
-        await bench.shows("better")
+        await bench.wait_until_shown("better")
 
 
 async def test_broken_model_without_viewer_ends_launch(write) -> None:
@@ -246,16 +246,16 @@ async def test_missing_model_ends_launch(tmp_path: Path) -> None:
 async def test_change_before_watch_starts_is_detected(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         path.write_text(model("b"))
         os.utime(path, ns=(time.time_ns() + 10**9,) * 2)
-        await bench.shows("b")
+        await bench.wait_until_shown("b")
 
 
 async def test_whitespace_change_updates_source_positions(write) -> None:
     path = write("r.xacro", model("a"))
     async with running(path) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text("\n\n" + model("a"))
         await bench.until(lambda: "reloaded" in bench.err)
@@ -275,7 +275,7 @@ async def test_package_added_later_fixes_model(write, tmp_path: Path) -> None:
         write("late/part.xacro", f'<robot {XACRO}><link name="a"/></robot>')
         write("late/package.xml", "<package><name>late</name></package>")
         path.write_text(path.read_text() + "\n")
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
 
 
 async def test_viewer_messages_have_node_name_prefix(write) -> None:
@@ -306,7 +306,7 @@ async def test_recreated_folder_is_watched_again(tmp_path: Path, depth: int) -> 
 
     build("a")
     async with running(path, viewer=False) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         path.write_text(model("b"))
         await bench.until(lambda: '<link name="b"/>' in bench.description())
         for link in ("c", "d"):
@@ -318,11 +318,11 @@ async def test_recreated_folder_is_watched_again(tmp_path: Path, depth: int) -> 
 
 
 async def test_file_deleted_before_watch_starts_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(FileWatch, "watch", lambda *_: True)  # it never begins
+    monkeypatch.setattr(FileWatch, "watch", lambda *_: True)  # the watch never begins
     path = tmp_path / "m.xacro"
     path.write_text(model("a"))
     async with running(path, viewer=False) as bench:
-        await bench.shows("a")
+        await bench.wait_until_shown("a")
         path.unlink()
         bench.session.reload._reload_missed()
         await bench.until(lambda: bool(bench.findings()))
@@ -332,7 +332,7 @@ async def test_urdf_findings_are_reported_with_xacro_error(tmp_path: Path) -> No
     path = tmp_path / "m.xacro"
     path.write_text(model("good"))
     async with running(path, viewer=False) as bench:
-        await bench.shows("good")
+        await bench.wait_until_shown("good")
         await bench.watching()
         path.write_text(
             f'<robot name="r" {XACRO}>\n  <link name="${{nothing}}"/>\n  <link name="a"/>\n'
@@ -342,4 +342,4 @@ async def test_urdf_findings_are_reported_with_xacro_error(tmp_path: Path) -> No
         codes = [finding.code for finding in bench.findings()]
         assert codes[0].startswith("XAC")
         assert any(code.startswith("URDF") for code in codes[1:])
-        assert bench.description().count('name="good"') == 1, "the last good model stays"
+        assert bench.description().count('name="good"') == 1, "the last model without errors is kept"

@@ -7,7 +7,7 @@ import sys
 import pytest
 from launch.utilities import AsyncSafeSignalManager
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of users are POSIX")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no user signals")
 
 
 @pytest.fixture

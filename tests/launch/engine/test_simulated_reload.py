@@ -40,7 +40,7 @@ class Launched:
         self._session = session
         self.err = err
 
-    async def when(self, condition: Callable[[Simulation], bool]) -> None:
+    async def wait_until(self, condition: Callable[[Simulation], bool]) -> None:
         """Wait until a condition holds in the thread of the simulation."""
         outcomes: list[bool] = []
 
@@ -87,14 +87,14 @@ async def launched(folder: Path) -> AsyncIterator[Launched]:
 async def test_launched_simulation_reloads_world_and_robot(write) -> None:
     files = write("a.world", world(FALLING)), write("arm.xacro", ARM.format(""))
     async with launched(files[0].parent) as running:
-        await running.when(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one"})
+        await running.wait_until(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one"})
         files[0].write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
-        await running.when(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one", "new"})
+        await running.wait_until(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one", "new"})
         files[1].write_text(ARM.format(MORE))
-        await running.when(lambda simulation: "one::more" in simulation.scene.bodies)
-        await running.when(lambda simulation: simulation.model_pose("one")[0] == 2.0)
+        await running.wait_until(lambda simulation: "one::more" in simulation.scene.bodies)
+        await running.wait_until(lambda simulation: simulation.model_pose("one")[0] == 2.0)
         files[1].write_text(ARM.format("<link"))
         await eventually(lambda: "error[XML" in running.err.getvalue(), what=running.err.getvalue)
-        await running.when(lambda simulation: "one::more" in simulation.scene.bodies)
+        await running.wait_until(lambda simulation: "one::more" in simulation.scene.bodies)
         files[1].write_text(ARM.format(""))
-        await running.when(lambda simulation: "one::more" not in simulation.scene.bodies)
+        await running.wait_until(lambda simulation: "one::more" not in simulation.scene.bodies)

@@ -74,7 +74,7 @@ def test_unsaved_displays_of_viewed_model_are_stored(
     add_axes(running)
     assert running.end()[0] == 130
     (file,) = recovery_folder.iterdir()
-    assert file.name.startswith("arm-"), "edits beside another model are recovery_folder in another file"
+    assert file.name.startswith("arm-"), "edits are stored by model"
     assert [display.name for display in RvizConfig.load(file).walk()] == ["Grid", "RobotModel", "TF", "Added"]
 
 

@@ -56,7 +56,7 @@ def test_unreadable_file_is_reported(write: Write, monkeypatch: pytest.MonkeyPat
     def refuse(*_arguments: object, **_more: object) -> str:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(python_file, "read_text", refuse)  # root, who runs some test machines, may read anything
+    monkeypatch.setattr(python_file, "read_text", refuse)  # root, as on some test machines, may read all files
     assert fault(path).code == "LAUNCH102"
 
 
@@ -165,7 +165,7 @@ def test_columns_count_characters(write: Write) -> None:
 
 
 def test_missing_package_is_reported(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)  # packages are looked for below the current folder too
+    monkeypatch.chdir(tmp_path)  # the search includes folders below the current one
     diagnostic = fault(
         write(
             "a.launch.py",
@@ -209,7 +209,7 @@ def test_non_action_in_group_is_rejected(write: Write) -> None:
     assert "expected launch actions, got 'a node' of type str" in diagnostic.message
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="links need a right there, without which none are made")
+@pytest.mark.skipif(sys.platform == "win32", reason="symbolic links need a privilege on Windows")
 class TestLinkedShareFolder:
     """A package whose share folder has another layout than its sources, and contains links to them."""
 

@@ -230,7 +230,7 @@ def test_substitutions_describe_themselves(substitution: Substitution, descripti
 def test_custom_substitution_is_performed_and_can_fail(context: LaunchContext) -> None:
     class Upper(Substitution):
         def __init__(self, inner: str) -> None:
-            self.inner = inner  # as many do, without a call of our constructor
+            self.inner = inner  # many classes do not call the base class's constructor
 
         def perform(self, context: LaunchContext) -> str:
             if not self.inner:

@@ -75,7 +75,7 @@ class TestRequests:
         parameters = [(parameter.name, parameter.value) for parameter in request.parameters]
         assert [name for name, _ in parameters] == ["a", "c", "d", "b.x", "c", "d"]
         assert parameters[0][1].string_value == "text"
-        # A node's own name counts more than a pattern, whichever comes first.
+        # The name of a node takes precedence over a pattern, in any order.
         assert parameters[1][1].integer_value == 9
         assert list(parameters[2][1].double_array_value) == [1.5]
         assert parameters[3][1].bool_value is True
@@ -102,7 +102,7 @@ class TestRequests:
             ("/tk", {"name": "tk", "namespace": "ns"}, "has no section for node '/ns/tk'"),
             ("/ns/tk", {"name": "tk", "namespace": "ns"}, ""),
             ("/**", {"name": "tk"}, ""),
-            ("/other", {}, ""),  # the name that its code gives it is not known
+            ("/other", {}, ""),  # the default name, which the code of the node sets, is unknown
         ],
     )
     def test_parameter_file_without_section_for_node_is_reported(

@@ -230,7 +230,7 @@ async def test_script_installed_by_cmake_imports_its_package(launch, write: Writ
         "install(PROGRAMS scripts/look.py scripts/list.sh DESTINATION lib/${PROJECT_NAME})\n",
     )
     write("ws/src/p/p/__init__.py", "WORD = 'seen'\n")
-    write("ws/src/p/scripts/look.py", "import p\nprint(p.WORD)\n")  # neither made executable nor with a first line
+    write("ws/src/p/scripts/look.py", "import p\nprint(p.WORD)\n")  # neither executable nor with a shebang line
     write("ws/src/p/scripts/list.sh", "#!/bin/sh\necho $0 $1\n")
     nodes = [Node(package="p", executable=name, arguments=["x"], output="screen") for name in ("look.py", "list.sh")]
     result = await launch(*nodes, finder=finder)

@@ -249,7 +249,7 @@ class TestHostedNodes:
             LogInfo(msg="others go on"),
         )
         assert "error[NODE101]" in result.err
-        assert "FATAL" not in result.err, "that says the same"
+        assert "FATAL" not in result.err, "a FATAL message would report the same error twice"
         assert "[ERROR] [robot_state_publisher-1]: node has not started" in result.err
         assert result.messages == ["others go on", "gone"]
         assert not result.succeeded

@@ -44,14 +44,14 @@ class Entry:
 def install(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
     """Install extensions with given names."""
 
-    def having(**found: Any) -> None:
+    def install_extensions(**found: Any) -> None:
         entries = {name: Entry(extension) for name, extension in found.items()}
         monkeypatch.setattr(
             node_extensions, "extensions", lambda group: entries if group == node_extensions.GROUP else {}
         )
         node_extensions.node_extensions.cache_clear()
 
-    yield having
+    yield install_extensions
     node_extensions.node_extensions.cache_clear()
 
 

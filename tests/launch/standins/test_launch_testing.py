@@ -124,7 +124,7 @@ def run(tmp_path: Path):
         environment = {**os.environ, "LINKWRIGHT_DDS": "0", "ROS_LOG_DIR": str(tmp_path / "log")}
         if words[:1] == ("pytest",):
             program = ["-m", "pytest", "-q", "-p", "no:cacheprovider", *words[1:], "test_it.py"]
-        if words[:2] != ("pytest", "--launch-args"):  # plain pytest has them by its plugin
+        if words[:2] != ("pytest", "--launch-args"):  # the plugin of pytest provides the stand-ins
             environment = process.environment(environment)
         return subprocess.run(
             [sys.executable, *program], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False

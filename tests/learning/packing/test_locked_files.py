@@ -16,8 +16,8 @@ pytestmark = pytest.mark.extra("learn")
 
 SOURCE_ONLY = {"srt"}
 """Packages of pure Python without a wheel, which packs build."""
-OTHERWISE = {"async-timeout", "backports-asyncio-runner", "cffi", "colorama", "pycparser", "pywinpty", "tomli"}
-"""Packages that some systems or Pythons do not need."""
+CONDITIONAL = {"async-timeout", "backports-asyncio-runner", "cffi", "colorama", "pycparser", "pywinpty", "tomli"}
+"""Packages that some systems or versions of Python do not need."""
 MISSING = {
     "windows": {"cyclonedds": ["3.14"], "pocketsphinx": ["3.14"]},
     "macos-arm64": {"cyclonedds": ["3.14"], "embreex": "all", "pocketsphinx": ["3.14"]},
@@ -57,7 +57,7 @@ def test_packages_of_some_systems_belong_to_listed_parts() -> None:
     }
     here = [package_names(target, ["learn"], locked_packages()) for target in TARGETS]
     sometimes = (set.union(*here) - set.intersection(*here)) & direct
-    assert sometimes - OTHERWISE == {name for part in PARTS for name in part.packages}
+    assert sometimes - CONDITIONAL == {name for part in PARTS for name in part.packages}
 
 
 def test_windows_targets_need_pywinpty() -> None:

@@ -1,4 +1,4 @@
-"""Packs: what they contain, and how they are continued, checked and installed."""
+"""Packs: their contents, continuation, checks and installation."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_pack_has_installer_for_each_system(pack: Path) -> None:
 
 def test_checksums_match_sha256sum(pack: Path) -> None:
     if shutil.which("sha256sum") is None:
-        pytest.skip("there is no sha256sum")
+        pytest.skip("sha256sum is not installed")
     subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd=pack, check=True)
 
 
@@ -243,7 +243,7 @@ def installable(index: FakeIndex, tmp_path: Path) -> Path:
     """Create a pack for this system with the pip of this Python."""
     bundled = sorted((Path(ensurepip.__file__).parent / "_bundled").glob("pip-*.whl"))
     if not bundled or sys.platform != "linux" or sys.version_info >= (3, 15):
-        pytest.skip("this Python has no pip of its own")
+        pytest.skip("this Python has no pip")
     path = Path(shutil.copy(bundled[0], index.folder))
     version = path.name.split("-")[1]
     del index.table["pip 9.0"]  # type: ignore[attr-defined]
@@ -313,7 +313,7 @@ def test_installer_gives_advice_without_python(pack: Path, tmp_path: Path) -> No
 
 def test_installer_unpacks_python_archive_if_python_is_missing(pack: Path, tmp_path: Path) -> None:
     if sys.platform != "linux":
-        pytest.skip("for Linux")
+        pytest.skip("the archive is for Linux")
     (tmp_path / "python" / "bin").mkdir(parents=True)
     program = tmp_path / "python" / "bin" / "python3"
     program.write_text('#!/bin/sh\n[ "$1" = -c ] || echo "started $1"\n')

@@ -1,4 +1,4 @@
-"""Folders of students, and whether anything of a run is left."""
+"""Folders of students, and the processes that a run has left."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Runs of the sandbox as on other systems: in a container, as an ordinary user, without some abilities of the kernel.
+"""Runs of the sandbox as on other systems: in a container, as an ordinary user, or without some features of the kernel.
 
-``python situations.py NAME`` reads a request from standard input, takes away what the system of that name lacks, and
-prints the outcome. It uses the standard library only, because an ordinary user may not be able to read this Python.
+``python situations.py NAME`` reads a request from standard input, disables the features that the named system lacks,
+and prints the outcome. It uses only the standard library, because an ordinary user may have no access to this Python.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from linkwright.learning.sandbox.plan import outcome_from_json, outcome_to_json
 ROOT = Path(__file__).resolve().parents[3]
 
 _DOCKER_CAPABILITIES = 0xA80425FB
-"""Capabilities of a plain container: CHOWN, DAC_OVERRIDE, SETUID, SETGID, KILL and others, not SYS_ADMIN."""
+"""The capabilities of a default container: CHOWN, DAC_OVERRIDE, SETUID, SETGID, KILL and others, not SYS_ADMIN."""
 _NUMBERS = {
     "x86_64": {"audit": 0xC000003E, "unshare": 272, "mount": 165},
     "aarch64": {"audit": 0xC00000B7, "unshare": 97, "mount": 40},
@@ -37,15 +37,15 @@ _NUMBERS = {
 _LANDLOCK = 444
 _CLONE_NEWUSER = 0x10000000
 
-# What each system has: is the grader root, which namespaces, is there Landlock.
+# name of the system: whether the grader is root, the allowed namespaces, whether there is Landlock
 SITUATIONS = {
     "root": (True, "all", True),
     "container": (True, "none", True),
-    "container with namespaces": (True, "all", True),  # those of users; root of a container may not enter others
+    "container with namespaces": (True, "all", True),  # user namespaces; root of a container may not enter others
     "container without Landlock": (True, "none", False),
     "user": (False, "all", True),
     "user without Landlock": (False, "all", False),
-    "user in Ubuntu": (False, "user", True),  # AppArmor allows the namespace of users, and no others in it
+    "user in Ubuntu": (False, "user", True),  # AppArmor allows a user namespace, but no other namespaces in it
     "user without namespaces": (False, "none", True),
     "user without anything": (False, "none", False),
 }
@@ -111,8 +111,8 @@ def _user() -> int:
     return 20_000 + os.getpid() % 10_000
 
 
-def _take_away(name: str) -> None:
-    """Make this process one of a system in which the sandbox has less to work with."""
+def _restrict(name: str) -> None:
+    """Restrict this process as the named system does."""
     is_root, namespaces, has_landlock = SITUATIONS[name]
     if not is_root and os.geteuid() == 0:
         user = 20_000 + os.getppid() % 10_000
@@ -120,7 +120,7 @@ def _take_away(name: str) -> None:
         os.setresgid(user, user, user)
         os.setresuid(user, user, user)
     if not is_root:
-        resource.setrlimit(resource.RLIMIT_NPROC, (300, 300))  # the tests' own safety net
+        resource.setrlimit(resource.RLIMIT_NPROC, (300, 300))  # protects the test machine
     elif name != "root":
         _keep_capabilities(_DOCKER_CAPABILITIES)
     denied = {}
@@ -140,7 +140,7 @@ def _keep_capabilities(mask: int) -> None:
 
 
 def _deny(denied: dict[str, int], *, allow_user_namespace: bool, deny_landlock: bool) -> None:
-    """Let system calls fail, by a filter such as those of containers (seccomp)."""
+    """Let system calls fail by a seccomp filter, as in containers."""
     numbers = _NUMBERS[os.uname().machine]
     rules = [(numbers[name], error) for name, error in denied.items()]
     if deny_landlock:
@@ -160,7 +160,7 @@ def _deny(denied: dict[str, int], *, allow_user_namespace: bool, deny_landlock: 
     program.append((0x06, 0, 0, 0x7FFF0000))
     code = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *line) for line in program))
     filter_program = struct.pack("HxxxxxxQ", len(program), ctypes.addressof(code))
-    libc().prctl(38, 1, 0, 0, 0)  # without it, only root may add a filter
+    libc().prctl(38, 1, 0, 0, 0)  # without this, only root may add a filter
     assert libc().prctl(22, 2, ctypes.create_string_buffer(filter_program), 0, 0) == 0 or not rules
 
 
@@ -168,7 +168,7 @@ def _main() -> None:
     from linkwright.learning.sandbox import run_in_sandbox
 
     request = json.load(sys.stdin)
-    _take_away(sys.argv[1])
+    _restrict(sys.argv[1])
     outcome = run_in_sandbox(
         [sys.executable if word == "PYTHON" else word for word in request["arguments"]],
         folder=Path(request["folder"]),

@@ -17,7 +17,7 @@ from tests.learning.sandbox import attacks
 from tests.learning.sandbox.conftest import processes_with
 from tests.learning.sandbox.situations import SITUATIONS, expected_protections, is_possible, run_in_situation
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the situations are those of Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the simulated situations need Linux")
 
 MEBIBYTE = 1 << 20
 LIMITS = Limits(
@@ -31,14 +31,14 @@ LIMITS = Limits(
     output_bytes=100_000,
 )
 MOST_OVERSHOOT = 400 * MEBIBYTE
-"""The space that a run may occupy beyond its limit before the watchdog sees it, on a slow machine."""
+"""The space that a run may use beyond its limit before the watchdog of a slow machine notices it."""
 
 
 @pytest.fixture(params=list(SITUATIONS))
 def situation(request: pytest.FixtureRequest) -> str:
     name: str = request.param
     if not is_possible(name):
-        pytest.skip("this user cannot pretend to be in that situation")
+        pytest.skip("this user cannot simulate the situation")
     return name
 
 
@@ -47,7 +47,7 @@ def attack(situation: str, folder: Path, program: str, *words: str, limits: Limi
     mark = mark or uuid.uuid4().hex
     arguments = ["PYTHON", "-I", "-S", "-c", program, *words, mark]
     outcome = run_in_situation(situation, arguments, folder, limits)
-    if situation != "user without anything" or outcome.protections:  # there, a program may kill its supervisor
+    if situation != "user without anything" or outcome.protections:  # otherwise a program may kill its supervisor
         assert outcome.protections == expected_protections(situation)
     assert processes_with(mark) == []
     return outcome
@@ -134,7 +134,7 @@ def test_system_temporary_folders_are_not_filled(situation: str, student: Path) 
     for path in left:
         path.unlink()
     is_root, _, _ = SITUATIONS[situation]
-    if is_root or Protection.WRITE in outcome.protections:  # a run of root has a user whose files are known
+    if is_root or Protection.WRITE in outcome.protections:  # runs of root have separate users, whose files are removed
         assert left == []
     if Protection.WRITE in outcome.protections:
         assert sum(written.values()) <= 2 * LIMITS.memory // 8
@@ -177,7 +177,7 @@ def test_run_cannot_leave_sandbox(situation: str, student: Path) -> None:
 
 def _possible(protections: frozenset[Protection]) -> set[str]:
     """Return the actions that the protections do not forbid."""
-    possible = {"write above its folder"}  # which may be a folder of the sandbox
+    possible = {"write above its folder"}  # the parent folder may belong to the sandbox
     if Protection.READ not in protections:
         possible |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}
         possible |= {"read by the grader's root"}
@@ -194,6 +194,6 @@ def _possible(protections: frozenset[Protection]) -> set[str]:
 
 def test_kill_of_all_processes_affects_only_run(situation: str, student: Path) -> None:
     if Protection.PROCESSES not in expected_protections(situation):
-        pytest.skip("it would kill this test")
+        pytest.skip("the attack would kill this test")
     outcome = attack(situation, student, attacks.KILL_ALL)
     assert outcome.exceeded is None

@@ -28,7 +28,7 @@ from tests.learning.sandbox import attacks
 from tests.learning.sandbox.conftest import processes_with
 from tests.waiting import wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there is no sandbox on Windows")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no sandbox")
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux")
 
 LIMITS = Limits(seconds=60, cpu_seconds=20)
@@ -132,7 +132,7 @@ def test_missing_program_is_an_error(student: Path) -> None:
 
 def test_run_uses_only_given_processors(student: Path) -> None:
     if sys.platform != "linux":
-        pytest.skip("only Linux has this")
+        pytest.skip("only Linux has this feature")
     processor = min(os.sched_getaffinity(0))
     outcome = run_python(student, "import os; print(os.sched_getaffinity(0))", processors=[processor])
     assert outcome.stdout.decode().strip() == str({processor})
@@ -172,7 +172,7 @@ with subprocess.Popen([*command, "pub", *words, "data: hello", "--rate", "20"], 
 
 def test_system_v_shared_memory_is_refused(student: Path) -> None:
     if sys.platform != "linux" or os.uname().machine not in {"x86_64", "aarch64"}:
-        pytest.skip("no filter of system calls here")
+        pytest.skip("this system has no filter of system calls")
     program = "import ctypes; print(ctypes.CDLL(None).shmget(0, 4096, 0o1600))"
     assert run_python(student, program).stdout == b"-1\n"
 

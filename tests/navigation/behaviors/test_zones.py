@@ -56,7 +56,7 @@ def test_limit_zone_keeps_curvature(velocity, remaining_share):
 def test_approach_zone_keeps_time_before_collision():
     rule = ZoneRule(ZoneAction.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.1)
     ahead = Velocity(0.5, 0.0, 0.0)
-    # 0.7 m ahead: the rim of the body, 0.2 m, meets it after 0.5 m, which takes 1 s of the 2 s.
+    # The point is 0.7 m ahead. The edge of the body, at 0.2 m, reaches it after 0.5 m or 1 s, which is less than 2 s.
     allowed = rule.limit_velocity(BODY, points(1, 0.699), ahead)
     assert allowed is not None
     assert allowed.x == pytest.approx(0.25, abs=0.03)

@@ -55,7 +55,7 @@ def test_footprint_cost_accepts_arrays_of_poses():
     costmap.grid.cells[20, 32] = LETHAL
     poses = np.array([[[0.0, 0.05, 0.0], [-0.03, 0.05, pi / 4]], [[1.0, 1.0, 0.0], [2.95, 0.0, 0.0]]])
     costs = costmap.footprint_cost(poses, SQUARE)
-    assert costs.tolist() == [[LETHAL, LETHAL], [0, LETHAL]]  # the last one leaves the grid
+    assert costs.tolist() == [[LETHAL, LETHAL], [0, LETHAL]]  # the last footprint leaves the grid
 
 
 def test_footprint_padding_moves_corners_outward():

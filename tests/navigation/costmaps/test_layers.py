@@ -218,8 +218,8 @@ def test_descending_ray_clears_voxels_it_passes():
     sensor = OverheadSensor(VoxelLayer, Voxels())
     sensor.observe((2.55, 2.05, 0.5), (2.85, 2.05, 0.5), origin=(2.05, 2.05, 0.5))
     cells = sensor.observe((3.05, 2.05, 0.2), origin=(2.05, 2.05, 0.8))
-    assert cells[20, 25] == FREE  # passed at 0.5 m
-    assert cells[20, 28] == LETHAL  # at 0.32 m
+    assert cells[20, 25] == FREE  # the ray passes at a height of 0.5 m
+    assert cells[20, 28] == LETHAL  # the ray passes at 0.32 m, above the obstacle
 
 
 def test_voxel_columns_with_few_observations_are_unknown():

@@ -94,7 +94,7 @@ def batch_solution(settings, measurements, steps):
 def test_filter_matches_batch_least_squares(filter_type):
     noise = diagonal(x=0.02, vx=0.1, ax=0.3, y=0.03, vy=0.2, ay=0.1)
     start = diagonal(x=1.0, vx=2.0, ax=1.0, y=1.0, vy=1.0, ay=0.5)
-    # Sigma points near the state lose digits to rounding; far ones do not, and the motion is linear here.
+    # Sigma points near the state lose digits by rounding. Far points are as exact, because the motion is linear here.
     settings = Settings(noise=noise, initial_covariance=start)
     kalman = filter_type(settings) if filter_type is ExtendedKalmanFilter else filter_type(settings, alpha=1.0)
     kalman.is_initialized = True
@@ -128,7 +128,7 @@ def test_velocity_is_estimated_from_positions(filter_type):
 
 @FILTERS
 def test_constant_turn_is_tracked(filter_type):
-    # The less sure a heading is, the shorter is the mean way of all headings: it is sure here.
+    # An uncertain heading shortens the mean displacement, so the heading is certain here.
     kalman = filter_type(Settings(noise=np.eye(SIZE) * 1e-6))
     for step in range(1, 301):
         kalman.process(measurement_of(0.01 * step, 1e-6, vx=1.0, vy=0.0, vz=0.0, vroll=0.0, vpitch=0.0, vyaw=0.5))

@@ -17,7 +17,7 @@ from linkwright.navigation.estimation.motion_model import (
 )
 
 numbers = st.floats(-2.0, 2.0)
-# Near a pitch of 90 degrees the rates of roll and yaw have no bound.
+# Near a pitch of 90 degrees, the rates of roll and yaw are unbounded.
 states = st.tuples(*([numbers] * 3), numbers, st.floats(-1.0, 1.0), numbers, *([numbers] * 9)).map(np.array)
 
 

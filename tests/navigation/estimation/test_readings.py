@@ -87,7 +87,7 @@ def test_roll_of_rotated_imu_is_pitch_of_body():
 
 def test_twist_is_corrected_for_lever_arm_of_sensor():
     mounting, rates = pose(1.0, rpy=(0, 0, pi / 2)), np.array([0.0, 0.0, 2.0])
-    # The sensor is carried to the left at 2 m/s, which is its own x.
+    # The rotation moves the sensor to the left at 2 m/s, which is the sensor's x direction.
     reading = read_twist(np.array([2.0, 0.0, 0.0]), rates, SIX, mounting, rates, ALL, two_d=False)
     assert reading.values[VELOCITY] == pytest.approx([0.0, 0.0, 0.0])
     assert reading.values[RATES] == pytest.approx([0.0, 0.0, 2.0])

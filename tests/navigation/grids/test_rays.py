@@ -49,7 +49,7 @@ def test_rays_end_at_walls_and_maximum_range() -> None:
     ranges = cast_rays(field, np.array([1.0, 2.5]), np.array([0.0, pi / 4, pi, pi / 2]), 10.0)
     assert abs(ranges[0] - 3.0) <= 0.05
     assert ranges[2] == ranges[3] == 10.0
-    assert ranges[1] == 10.0  # it leaves the grid before it meets the wall
+    assert ranges[1] == 10.0  # the ray leaves the grid before the wall
     assert cast_rays(field, np.array([1.0, 2.5]), np.array([0.0]), 2.0)[0] == 2.0
 
 

@@ -54,7 +54,8 @@ def test_resampling_follows_weights() -> None:
 
 def test_estimate_is_mean_of_likeliest_cluster() -> None:
     particles = ParticleFilter(FilterSettings())
-    large_cluster = np.random.default_rng(0).normal((2.0, 1.0, pi), (0.2, 0.2, 0.2), (600, 3))  # across the turn's end
+    # The headings are on both sides of the jump from pi to -pi.
+    large_cluster = np.random.default_rng(0).normal((2.0, 1.0, pi), (0.2, 0.2, 0.2), (600, 3))
     large_cluster[:, 2] = (large_cluster[:, 2] + pi) % (2 * pi) - pi
     small_cluster = np.random.default_rng(1).normal((8.0, 5.0, 0.0), 0.1, (400, 3))
     particles.set_particles(np.concatenate((large_cluster, small_cluster)))
@@ -72,13 +73,13 @@ def test_random_particles_are_added_when_likelihood_drops() -> None:
     particles.set_particles(np.tile((1.0, 1.0, 0.0), (1000, 1)))
     random_counts: list[int] = []
 
-    def anywhere(count: int) -> Poses:
+    def draw_random_poses(count: int) -> Poses:
         random_counts.append(count)
         return np.full((count, 3), 9.0)
 
     for likelihood in (8.0, 8.0, 1.0):
         particles.update_weights(np.full(len(particles.particles), likelihood))
-        particles.resample(anywhere)
+        particles.resample(draw_random_poses)
     assert len(random_counts) == 1
     assert random_counts[0] / 2000 == pytest.approx(1 - 4.5 / 7.993, abs=0.05)
 
@@ -90,7 +91,7 @@ def test_zero_likelihoods_give_uniform_weights() -> None:
 
 
 def test_pose_error_of_half_a_meter_is_corrected_while_driving() -> None:
-    """A room with exact scans and odometry; the first pose is wrong by 0.5 m and 0.3 rad."""
+    """Scans and odometry are exact, and the first pose is wrong by 0.5 m and 0.3 rad."""
     likelihoods = room()
     particles = ParticleFilter(FilterSettings())
     true = np.array((1.5, 1.2, 0.2))

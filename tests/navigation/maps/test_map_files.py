@@ -55,7 +55,7 @@ def test_pixel_values_match_nav2_in_each_mode(
 
 def test_alpha_is_averaged_in_trinary_and_unknown_in_scale_mode() -> None:
     image = MapImage(np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
-    # (0 + 0 + 0 + 1) / 4 is a darkness of 0.75
+    # The mean of the channels is (0 + 0 + 0 + 1) / 4, so the darkness is 0.75.
     assert cells_of_image(image, _map_yaml(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
     assert cells_of_image(image, _map_yaml(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
     assert cells_of_image(image, _map_yaml(MapMode.SCALE)).tolist() == [[100, -1, -1]]

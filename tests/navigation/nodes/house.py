@@ -25,7 +25,7 @@ TOUR = [
     (-0.2, -2.6), (0.6, -1.7), (2.3, -1.7), (3.4, -0.6), (3.6, -1.6), (2.2, -1.7), (0.6, -1.7), (0.0, 0.2), (0.0, 2.5),
     (2.4, 2.4), (1.8, 2.5), (0.0, 2.5), (0.0, -0.1), (-1.5, -0.2),
 ]  # fmt: skip
-"""Through living room, bedroom, living room, kitchen, hall, bath, and back, in the frame of the house."""
+"""A path through living room, bedroom, living room, kitchen, hall and bath, and back, in the frame of the house."""
 
 
 def simulation(**options: Any) -> SteppedSimulation:

@@ -36,7 +36,7 @@ TOUR = [
     (0.4, -1.7),
     (0.0, 0.0),
 ]
-"""Through the living room and into the kitchen and back."""
+"""A path through the living room into the kitchen, and back."""
 
 
 class House:
@@ -150,7 +150,7 @@ def test_wrong_pose_estimate_is_corrected_while_driving(begin: Begin) -> None:
     with pytest.raises(TransformException):
         house.error()
     assert "Please set the initial pose" in house.logged(LogLevel.WARN)[0]
-    house.send_pose_estimate(-1.6, 0.3, 0.2)  # 0.5 m and 0.3 rad off
+    house.send_pose_estimate(-1.6, 0.3, 0.2)  # wrong by 0.5 m and 0.3 rad
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4)])
     distance, angle = house.error()

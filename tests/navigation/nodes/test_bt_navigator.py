@@ -76,7 +76,7 @@ async def test_navigate_to_pose_reaches_goal_with_feedback(robot):
     assert distances[-1] < 0.4
     assert goal.feedback[-1].number_of_recoveries == 0
     assert goal.feedback[-1].current_pose.header.frame_id == "map"
-    assert robot.planner.plans > 3, "a path each second"
+    assert robot.planner.plans > 3, "a path is planned each second"
 
 
 async def test_goal_pose_topic_of_rviz_moves_robot(robot):
@@ -149,7 +149,7 @@ async def test_goal_in_wall_aborts_with_reason(robot, log):
 
 
 async def test_goal_without_frame_aborts_without_recoveries(robot, log):
-    robot.planner.failures = 1000  # no planner transforms a pose without a frame
+    robot.planner.failures = 1000  # planners reject a pose without a frame
     goal = GoalSender(robot, "NavigateToPose", "navigate_to_pose")
     await goal.send(pose=pose_stamped(2.0, 1.0, frame=""))
     assert await goal.status_after(10.0) == GoalStatus.ABORTED
@@ -183,8 +183,9 @@ async def test_waypoints_are_followed_and_missed_ones_are_reported(robot):
     robot.planner.failures = 2
     await goal.send(poses=[pose_stamped(1.0, 3.5), pose_stamped(2.0, 1.0)])
     assert await goal.status_after(90.0) == GoalStatus.SUCCEEDED
+    # In Jazzy, missed waypoints are messages.
     missed_waypoints = [
         getattr(missed_waypoint, "index", missed_waypoint) for missed_waypoint in goal.answer.result.missed_waypoints
-    ]  # Jazzy's are messages
+    ]
     assert missed_waypoints == [0]
     assert robot.distance_to(2.0, 1.0) < 0.26

@@ -125,7 +125,7 @@ async def test_lost_transforms_stop_robot(start, log):
     assert robot.velocity.x > 0.0
     robot.publishes_pose = False
     await robot.run(0.5)
-    assert robot.velocity == ZERO_VELOCITY, "it waits"
+    assert robot.velocity == ZERO_VELOCITY, "the robot waits"
     robot.publishes_pose = True
     await robot.run(1.0)
     assert robot.velocity.x > 0.0, "the robot continues"

@@ -133,7 +133,7 @@ async def test_scan_waits_for_its_transform(robot, start):
     robot.publish_scan((0, 1.0))
     await robot.run(0.3)
     assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
-    robot.publish_pose(x=1.0)  # the robot has moved since the last transform, and the scan is between both
+    robot.publish_pose(x=1.0)  # the time of the scan is between this transform and the previous one
     await robot.run(0.3)
     obstacle_cells = np.argwhere(node.costmap.grid.cells[15:25, 20:50] == LETHAL)
     assert len(obstacle_cells) == 1

@@ -178,7 +178,8 @@ async def test_differential_and_relative_poses_are_fused(test):
     for step in range(30):
         test.publish("/wheels", odometry(test, x=7.0, y=0.05 * step, yaw=pi / 2, variance=1e-6))
         await test.advance(0.1)
-    # The way counts from the second pose, which gives the first velocity, or from the first one.
+    # The differential filter starts at the second pose, which gives the first velocity. The relative one starts at the
+    # first pose.
     assert planar(filtered[-2]) == pytest.approx((1.40, 0.0, 0.0), abs=0.01)
     assert planar(filtered[-1]) == pytest.approx((1.45, 0.0, 0.0), abs=0.01)
 

@@ -48,14 +48,14 @@ def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
             if transform.header.frame_id == "map"
         ][-1]
         mapper.close()
-    # The loop: odometry ends a meter from where the robot is, and the map does not.
+    # The loop is closed: odometry ends a meter from the robot's true position, and the corrected pose does not.
     translation, rotation = correction.transform.translation, correction.transform.rotation
     yaw = rpy_from_quaternion((rotation.x, rotation.y, rotation.z, rotation.w))[2]
     assert np.hypot(*relative_pose(true, drift.pose)[:2]) > 0.8
     error = relative_pose(true, compose(np.array((translation.x, translation.y, yaw)), drift.pose))
     assert np.hypot(error[0], error[1]) < 0.05
     assert abs(error[2]) < 0.02
-    # The walls: occupied cells near them are on them, and their visible parts are occupied.
+    # Occupied cells near walls are on the walls, and the visible parts of walls are occupied.
     occupied = occupied_centers(grid)
     near_walls = occupied[distances(walls, occupied) < 0.2]
     assert len(near_walls) > 900
@@ -64,4 +64,4 @@ def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
     assert len(visible) > 800
     gap_sizes = gaps(grid, visible)
     assert np.quantile(gap_sizes, 0.99) < CELL
-    assert gap_sizes.max() < 3 * CELL  # at the edge of the visible parts
+    assert gap_sizes.max() < 3 * CELL  # gaps are only at the edges of visible parts

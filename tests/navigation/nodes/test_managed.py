@@ -113,7 +113,7 @@ class _BondedPair:
 async def test_bond_forms_and_breaks_when_other_side_leaves(graph: Graph, clock: JumpClock) -> None:
     pair = _BondedPair(graph)
     await clock.advance(60.0)
-    assert pair.events == []  # it waits for the other side
+    assert pair.events == []  # the bond waits for the other side
     server = pair.server()
     await clock.advance(0.2)
     assert pair.events == ["formed"]
@@ -127,7 +127,7 @@ async def test_bond_breaks_after_four_seconds_of_silence(graph: Graph, clock: Ju
     pair = _BondedPair(graph)
     server = pair.server()
     await clock.advance(0.2)
-    server._timer.cancel()  # as if the process were gone
+    server._timer.cancel()  # simulates a dead process
     await clock.advance(3.8)
     assert pair.events == ["formed"]
     await clock.advance(0.4)

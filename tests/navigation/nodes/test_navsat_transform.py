@@ -15,7 +15,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.testing.stepped import AsyncSteppedGraph
 
 HERE = (48.5, 9.0)
-"""In the middle of zone 32, where the grid is not turned."""
+"""The center of zone 32, where the grid is not rotated."""
 
 
 @pytest.fixture
@@ -78,7 +78,7 @@ async def test_fixes_become_odometry_of_robot_that_faced_north(test):
     await imu(test, pi / 2)
     await fix(test, frame="base_link")
     await test.advance(0.15)
-    assert len(gps) == 0  # the first one is the origin
+    assert len(gps) == 0  # the first fix is the origin
     await odometry(test)
     await fix(test, east=-3.0, north=10.0, altitude=201.0, frame="base_link")
     await test.advance(0.1)
@@ -99,7 +99,7 @@ async def test_gps_receiver_offset_is_applied(test):
     await imu(test, 0.0)
     await fix(test)
     await test.advance(0.15)
-    await odometry(test, yaw=pi / 2)  # it turned on the spot: the receiver went to its left
+    await odometry(test, yaw=pi / 2)  # the robot turned in place, which moved the receiver
     await fix(test, east=-1.0, north=1.0)
     await test.advance(0.1)
     assert point(gps.last) == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)

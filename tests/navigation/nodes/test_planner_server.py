@@ -285,7 +285,7 @@ async def test_is_path_valid_checks_costmap(robot, server):
     assert (await ask((1.0, 1.0), (2.0, 1.0))).is_valid
     assert not (await ask()).is_valid
     assert not (await ask((1.0, 1.0), (3.9, 1.0))).is_valid
-    assert (await ask((0.1, 1.0), (1.0, 1.0), (2.0, 1.0))).is_valid  # the part behind the robot does not count
+    assert (await ask((0.1, 1.0), (1.0, 1.0), (2.0, 1.0))).is_valid  # the part behind the robot is not checked
 
 
 # --- smoothing --------------------------------------------------------------------------------------------------------

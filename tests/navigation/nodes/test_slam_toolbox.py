@@ -128,14 +128,13 @@ def test_map_pose_and_transform_are_published_and_accurate(test, kind):
     assert maps.last.header.frame_id == "map"
     assert maps.last.info.resolution == pytest.approx(0.05)
     assert sizes.last == maps.last.info
-    true = relative_pose(PATH[0], PATH[-1])  # the map's frame is at the first scan
+    true = relative_pose(PATH[0], PATH[-1])  # the origin of the map is at the first scan
     correction = map_to_odom(tf)
     assert compose(planar(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
-    assert (
-        correction.header.stamp.nanoseconds == test.clock.now_ns() - 500_000_000 + 500_000_000
-    )  # ahead by the time-out
-    at = poses.last.pose.pose.position
-    assert [at.x, at.y] == pytest.approx(true[:2], abs=0.3)
+    # The stamp is ahead by the timeout.
+    assert correction.header.stamp.nanoseconds == test.clock.now_ns() - 500_000_000 + 500_000_000
+    publish_at = poses.last.pose.pose.position
+    assert [publish_at.x, publish_at.y] == pytest.approx(true[:2], abs=0.3)
     covariance = np.reshape(poses.last.pose.covariance, (6, 6))
     assert 0 < covariance[0, 0] < 0.01
     assert 0 < covariance[5, 5] < 0.01
@@ -270,8 +269,8 @@ def test_robot_is_localized_in_saved_map(test, tmp_path):
     robot, return_path = Robot(test), along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
     robot.go(return_path, drifting(relative_pose(return_path[0], return_path), 1.05, 0.03))
     expected_poses = [relative_pose(PATH[0], pose) for pose in return_path]
-    at = poses.last.pose.pose.position
-    assert min(np.hypot(at.x - pose[0], at.y - pose[1]) for pose in expected_poses[-3:]) < 0.05
+    publish_at = poses.last.pose.pose.position
+    assert min(np.hypot(publish_at.x - pose[0], publish_at.y - pose[1]) for pose in expected_poses[-3:]) < 0.05
     initial = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
     initial.header.frame_id = "map"
     initial.pose.pose.position.x, initial.pose.pose.position.y = 4.6, 0.5
@@ -280,8 +279,8 @@ def test_robot_is_localized_in_saved_map(test, tmp_path):
     test.advance(0.1)
     pose = np.array((0.3, -3.0, 0.0))
     robot.go(pose[None], np.array([[20.0, 7.0, 2.0]]))  # the robot was carried away
-    at = poses.last.pose.pose.position
-    assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], pose)[:2], abs=0.05)
+    publish_at = poses.last.pose.pose.position
+    assert [publish_at.x, publish_at.y] == pytest.approx(relative_pose(PATH[0], pose)[:2], abs=0.05)
 
 
 def test_mapping_continues_in_saved_map(test, tmp_path):
@@ -302,8 +301,8 @@ def test_mapping_continues_in_saved_map(test, tmp_path):
     new_path = along([(3, -3), (4, -3), (4, 2)], step=0.25, turn=0.25)
     robot.go(new_path, drifting(relative_pose(new_path[0], new_path), 1.02, 0.02))
     assert len(node._work[0].mapper.scans) > scan_count
-    at = poses.last.pose.pose.position
-    assert [at.x, at.y] == pytest.approx(relative_pose(PATH[0], new_path[-1])[:2], abs=0.3)
+    publish_at = poses.last.pose.pose.position
+    assert [publish_at.x, publish_at.y] == pytest.approx(relative_pose(PATH[0], new_path[-1])[:2], abs=0.3)
     assert call(test, "set_localization_mode", "std_srvs/srv/SetBool", data=True).success
     count = len(node._work[0].mapper.scans)
     robot.go(new_path[::-1], relative_pose(new_path[0], new_path[::-1]))
@@ -384,7 +383,7 @@ def test_map_restarts_when_time_jumps_back(test):
     node = start(test, use_sim_time=True)
     robot, poses = Robot(test), test.record("/pose")
 
-    def at(seconds: float, pose: np.ndarray) -> None:
+    def publish_at(seconds: float, pose: np.ndarray) -> None:
         clock.publish(get_message("rosgraph_msgs/msg/Clock")(clock=Time.from_nanoseconds(round(seconds * 1e9))))
         test.settle()
         stamp = Time.from_nanoseconds(round(seconds * 1e9))
@@ -398,10 +397,10 @@ def test_map_restarts_when_time_jumps_back(test):
         test.settle()
 
     for number in range(5):
-        at(100.0 + number, np.array((0.5 * number, 0.0, 0.0)))
+        publish_at(100.0 + number, np.array((0.5 * number, 0.0, 0.0)))
     assert len(node._work[0].mapper.scans) == 5
-    at(1.0, np.zeros(3))
-    at(2.0, np.array((0.5, 0.0, 0.0)))
+    publish_at(1.0, np.zeros(3))
+    publish_at(2.0, np.array((0.5, 0.0, 0.0)))
     assert any("Time has jumped back" in line for line in logged(test, "WARN"))
     assert len(node._work[0].mapper.scans) == 2
     assert poses.last.header.stamp.sec == 2

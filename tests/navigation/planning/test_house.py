@@ -16,7 +16,7 @@ from tests.places import GAZEBO_PACKAGE
 
 ROBOT = 0.22
 WALLS = np.array((4.9, 3.9))
-"""Meters from the origin to the inner sides of the outer walls, along x and y."""
+"""The distances in meters from the origin to the inner sides of the outer walls, along x and y."""
 ROOM_POINTS = {
     "living room": (0.0, 0.0),
     "bedroom": (-1.9, 1.6),

@@ -63,7 +63,7 @@ def dijkstra(price: np.ndarray, source: tuple[int, int]) -> np.ndarray:
         b = (slice(row_step, rows), slice(margin + column_step, columns - step + column_step))
         with np.errstate(invalid="ignore"):
             weight = hypot(row_step, column_step) * (price[a] + price[b]) / 2.0
-        if row_step and column_step:  # no corner is cut
+        if row_step and column_step:  # a diagonal step must not cut a corner
             target_slice = (slice(0, rows - row_step), slice(margin + column_step, columns - step + column_step))
             below = (slice(row_step, rows), slice(margin, columns - step))
             weight = np.where(np.isfinite(price[target_slice] + price[below]), weight, np.inf)
@@ -111,8 +111,8 @@ def test_potential_matches_dijkstra(seed):
     assert np.array_equal(np.isfinite(truth), is_reached)
     is_far = is_reached & (truth > 10 * NEUTRAL_COST)
     between_middles = potential[is_far] - price[is_far] / 2.0 - price[2, 2] / 2.0
-    assert (between_middles <= 1.15 * truth[is_far]).all()  # of first order, and worst after ten cells
-    assert (potential[is_far] >= 0.9 * truth[is_far]).all()  # not only in eight directions, so it may be less
+    assert (between_middles <= 1.15 * truth[is_far]).all()  # first order, with the largest error near the start
+    assert (potential[is_far] >= 0.9 * truth[is_far]).all()  # not limited to eight directions
 
 
 @settings(max_examples=20, deadline=None)
@@ -239,7 +239,7 @@ def test_goal_inside_wall_is_rejected():
     obstacles = np.zeros((40, 40), np.bool_)
     obstacles[:, 18:23] = True
     robot = inflated_costmap(obstacles)
-    robot.grid.cells[:, 19:22] = INSCRIBED  # a wall that was seen from outside
+    robot.grid.cells[:, 19:22] = INSCRIBED  # sensors see only the outside of a wall
     assert problem(robot, (0.55, 2.05), (1.85, 2.05)) is Problem.GOAL_OCCUPIED
     assert problem(robot, (0.55, 2.05), (2.05, 2.05)) is Problem.GOAL_OCCUPIED
 
@@ -302,7 +302,7 @@ def test_smoothing_matches_relaxation():
 
 def test_smoothing_avoids_obstacles():
     robot = costmap(np.zeros((25, 25)))
-    robot.grid.cells[1:10, 10:20] = LETHAL  # within the corner
+    robot.grid.cells[1:10, 10:20] = LETHAL  # inside of the corner
     smooth_poses, complete = smooth_path(corner(), Smoothing(), robot)
     assert not complete
     assert (robot.cost_at(smooth_poses) == 0).all()

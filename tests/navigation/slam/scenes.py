@@ -11,7 +11,7 @@ from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.scan import planar_scan
 
 AHEAD = (np.eye(3), np.zeros(3))
-"""The pose of a laser in the middle of the robot."""
+"""The pose of a laser at the center of the robot."""
 
 
 def box(x, y, width, height):

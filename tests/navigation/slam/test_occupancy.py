@@ -32,7 +32,7 @@ def test_cell_that_most_rays_pass_is_free():
     for number in range(9):
         occupancy.draw(number, ray((3.0, 0.0)), pose)
     occupancy.draw(9, ray((1.0, 0.0)), pose)
-    assert occupancy.grid().cells.tolist() == [[FREE, FREE, FREE, OCCUPIED]]  # 1 of 10 is not more than 0.1
+    assert occupancy.grid().cells.tolist() == [[FREE, FREE, FREE, OCCUPIED]]  # a ratio of 1 to 10 is not more than 0.1
     occupancy.draw(10, ray((1.0, 0.0)), pose)
     assert occupancy.grid().cells.tolist() == [[FREE, OCCUPIED, FREE, OCCUPIED]]
 

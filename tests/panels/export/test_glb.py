@@ -37,7 +37,7 @@ def test_glb_shapes_have_size_and_color():
 def test_glb_uses_current_joint_positions():
     shown = snapshot(GRIPPER)
     glb = Glb(export_snapshot(replace(shown, positions={**shown.positions, "turn": np.pi / 2}), "glb"))
-    # About the link's y axis, which is the base's -x
+    # The rotation is about the link's y axis, which is the base's -x axis.
     np.testing.assert_allclose(glb.links["left"][:3, 3], (-0.45, 1, 0.25), atol=1e-6)
 
 

@@ -127,7 +127,7 @@ def test_html_contains_no_local_paths(tmp_path):
     (tmp_path / "d.stl").write_bytes(stl_binary())
     text = page(robot_of(link("d", mesh(tmp_path / "d.stl", ""))))
     assert str(tmp_path) not in text
-    # Nor how its files are fetched from the program that made it.
+    # The secret in the URLs of the program's files is not exported either.
     assert re.search(r"/mesh/[^/~]+/d\.stl", text)
     assert not re.search(r"~[0-9a-f]{32}", text)
     assert '"place":{' not in text
@@ -139,7 +139,7 @@ def test_export_format_is_recognized_by_suffix(name, known):
 
 
 async def test_html_contains_markers():
-    """Markers and similar displays in their current state."""
+    """Markers and similar displays have their current state."""
     config = RvizConfig.for_model("base")
     config.insert(config.new_display("rviz_default_plugins/Marker", "Marker"))
     async with open_world(config) as world:
@@ -153,7 +153,7 @@ async def test_html_contains_markers():
         world.viewer.manager.fit_to_robot(2.0, 0.0)
         snapshot = snapshot_of(world.viewer, world.viewer.manager)
     logged = recorded(export_snapshot(snapshot, "html").decode())
-    assert logged["awaits_size"] is False  # a page had measured the robot
+    assert logged["awaits_size"] is False  # a page has already measured the robot
     assert logged["spacing"] is None
     frames = [base64.b64decode(frame) for frame in logged["frames"]]
     assert any(b"markers_changed" in frame for frame in frames)

@@ -23,10 +23,10 @@ from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
 from tests.viewer.scene import World, open_world, page
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
 
-def real(path: Path) -> str:
+def real_path(path: Path) -> str:
     """Return the path that `pwd -P` prints."""
     return os.path.realpath(path)
 
@@ -96,7 +96,7 @@ async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:
         assert (await client.until("terminals"))["folder"] == str(tmp_path)
         reader = await open_terminal(client)
         await reader.type("pwd -P; echo 'Wort 小车'; echo $TERM $COLORTERM\r")
-        await reader.until(f"{real(tmp_path)}\r\nWort 小车\r\nxterm-256color truecolor\r\n")
+        await reader.until(f"{real_path(tmp_path)}\r\nWort 小车\r\nxterm-256color truecolor\r\n")
 
 
 async def test_requests_without_permission_are_rejected(tmp_path: Path) -> None:

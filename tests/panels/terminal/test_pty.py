@@ -17,10 +17,10 @@ from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.pty import Pty, TerminalProgram, TerminalSize
 from tests.waiting import SECONDS, wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals of POSIX")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
 
-def real(path: Path) -> str:
+def real_path(path: Path) -> str:
     """Return the path that `pwd -P` prints."""
     return os.path.realpath(path)
 
@@ -86,7 +86,7 @@ async def test_program_runs_in_folder_with_own_terminal(tmp_path: Path) -> None:
     async with running("pwd -P; test -t 0 && tty </dev/tty; stty size; exit 3", tmp_path) as program:
         assert await program.end() == 3
         folder, tty, size = program.output.decode().split("\r\n")[:3]
-        assert folder == real(tmp_path)
+        assert folder == real_path(tmp_path)
         assert tty.startswith("/dev/")
         assert size == "24 80"
 

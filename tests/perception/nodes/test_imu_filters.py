@@ -51,7 +51,7 @@ async def test_madgwick_publishes_orientation_and_transform(test):
     start(test, MadgwickNode, orientation_stddev=0.1)
     data, tf = test.record("/imu/data"), test.record("/tf")
     await measure(test)
-    assert len(data) == 0  # the magnetometer has not been heard
+    assert len(data) == 0  # no message of the magnetometer has arrived
     for _ in range(20):
         await measure(test, (0.3, -0.2, 1.0), magnetic=True)
     assert angles(data.last) == pytest.approx((0.3, -0.2, 1.0), abs=0.01)

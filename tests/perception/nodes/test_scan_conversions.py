@@ -42,14 +42,14 @@ async def send(test, topic, message):
     await test.settle()
 
 
-def headed(test, kind, frame):
+def message_in_frame(test, kind, frame):
     message = get_message(kind)()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(test.clock.now_ns()), frame
     return message
 
 
 def depth_image(test, depths, encoding="32FC1"):
-    message = headed(test, "sensor_msgs/msg/Image", "camera")
+    message = message_in_frame(test, "sensor_msgs/msg/Image", "camera")
     rows = np.asarray(depths, "<f4" if encoding == "32FC1" else "<u2")
     message.height, message.width = rows.shape
     message.encoding, message.step = encoding, rows.strides[0]
@@ -58,7 +58,7 @@ def depth_image(test, depths, encoding="32FC1"):
 
 
 def camera(test):
-    message = headed(test, "sensor_msgs/msg/CameraInfo", "camera")
+    message = message_in_frame(test, "sensor_msgs/msg/CameraInfo", "camera")
     message.p = [4.0, 0.0, 2.0, 0.0, 0.0, 4.0, 1.5, 0.0, 0.0, 0.0, 1.0, 0.0]
     return message
 
@@ -102,7 +102,7 @@ async def test_conversion_subscribes_only_while_subscribed(test):
 
 
 def cloud(test, points, frame="camera"):
-    message = headed(test, "sensor_msgs/msg/PointCloud2", frame)
+    message = message_in_frame(test, "sensor_msgs/msg/PointCloud2", frame)
     kind = np.dtype({"names": ["x", "y", "z"], "formats": ["<f4"] * 3, "offsets": [4, 8, 12], "itemsize": 20})
     values = np.zeros(len(points), kind)
     for axis, name in enumerate("xyz"):
@@ -145,7 +145,7 @@ async def test_scan_becomes_cloud(test):
     start(test, LaserScanToPointCloud, target_frame="base_link")
     clouds = test.record("/cloud")
     place(test, "base_link", "laser", (0.0, 0.0, pi / 2))
-    message = headed(test, "sensor_msgs/msg/LaserScan", "laser")
+    message = message_in_frame(test, "sensor_msgs/msg/LaserScan", "laser")
     message.angle_increment, message.range_min, message.range_max = 0.1, 0.1, 5.0
     message.ranges, message.intensities = [1.0, inf, 2.0], [7.0, 8.0, 9.0]
     await send(test, "/scan_in", message)

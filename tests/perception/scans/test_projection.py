@@ -15,7 +15,8 @@ def test_flat_depth_image_becomes_straight_wall():
     distances, rays = scan_from_depths(np.full((3, 5), 2.0), CAMERA, 1, 0.1, 10.0)
     assert (rays.angle_min, rays.angle_max) == (pytest.approx(-atan(0.5)), pytest.approx(atan(0.5)))
     assert rays.angle_increment == pytest.approx(atan(0.5) / 2)
-    # The rays of the scan are apart by the same angle, those of the picture are not: two of these meet in the first.
+    # The angles between the rays of the scan are equal, but not those between the columns of the image: two columns
+    # fall into the first ray.
     assert distances[[0, 2, 4]] == pytest.approx([hypot(2.0, 0.5), 2.0, hypot(2.0, 1.0)])
 
 

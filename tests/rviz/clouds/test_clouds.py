@@ -216,7 +216,7 @@ def test_coloring_effort_is_independent_of_cloud_size():
         message = cloud(array)
         return lines_run(lambda: colored(points_of_cloud(message), ColorSettings()))
 
-    work(10)  # what is kept from one cloud to the next
+    work(10)  # fills caches
     assert work(100) == work(100_000)
 
 
@@ -337,7 +337,7 @@ def test_occluded_points_remain_for_a_while_at_half_color():
 def test_deskew_places_rays_at_their_emission_pose():
     points = Points(np.array([[1, 0, 0]] * 3, np.float32), {"index": np.arange(3)})
     first = np.array([0.0, 0, 0, 0, 0, 0, 1])
-    last = np.array([2.0, 0, 0, 0, 0, 1, 0])  # two meters on, and half a turn
+    last = np.array([2.0, 0, 0, 0, 0, 1, 0])  # moved by two meters, and rotated by half a turn
     moved = deskew(points, np.array([0.0, 0.5, 1.0]), first, last).positions
     np.testing.assert_allclose(moved, [[1, 0, 0], [1, 1, 0], [1, 0, 0]], atol=1e-6)
 

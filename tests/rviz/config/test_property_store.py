@@ -64,7 +64,7 @@ def test_unknown_ids_are_not_found(store, identity):
 def test_only_changed_values_are_written(store, section):
     assert store.set(("Alpha",), 2) == 1.0
     store.set(("Links", "a/b%"), False)
-    store.set(("Reference Frame",), "map")  # as it is by default: not worth a line
+    store.set(("Reference Frame",), "map")  # the default value is not written
     assert yaml.safe_load(yaml_tree.write(section)) == {
         "Alpha": 1.0,
         "Line Style": {"Line Width": 0.2, "Value": "Billboards"},

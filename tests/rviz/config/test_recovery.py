@@ -81,7 +81,7 @@ async def test_no_recovery_file_without_edits(tmp_path):
         await change(client)
         await edit(client, "undo")
         assert world.viewer.keep_unsaved() == []
-        # Edited back by hand.
+        # The user reverts the edit by hand.
         await client.send("show_panels", shown=["time"])
         await client.until("configuration", unsaved=True)
         await client.send("show_panels", shown=[])

@@ -87,12 +87,12 @@ def test_grid_and_axes_are_resized_for_mesh_size():
     size = ModelSize(0.5, 0.2)
     sizes = {("Grid", "Cell Size"): 100.0, ("TF", "Marker Scale"): 12.0}
     assert sized(RvizConfig.for_model("base_link", size=size), 100.0) == sizes
-    # A single link of one mesh has no size without it.
+    # Without `size`, a model that is one link with a mesh has no size.
     assert sized(RvizConfig.for_model("base_link"), 100.0) == {**sizes, ("TF", "Marker Scale"): 50.0}
     config = RvizConfig.for_model("base_link", size=size)
     assert sized(config.copy(), 100.0) == sizes
     assert sized(config, 100.0) == sizes
-    assert sized(config, 200.0) == {}  # only once: somebody looks at it
+    assert sized(config, 200.0) == {}  # only once, because the user may have changed the view
 
 
 @pytest.mark.parametrize("diagonal", [0.0, -1.0, float("nan"), float("inf")])
@@ -134,7 +134,7 @@ def test_whole_robot_is_shown_until_camera_is_set():
     config = RvizConfig.for_model("base_link")
     assert config.shows_whole_robot
     assert config.copy().shows_whole_robot
-    assert not RvizConfig.parse(config.text()).shows_whole_robot  # saved, and opened as a file
+    assert not RvizConfig.parse(config.text()).shows_whole_robot  # the configuration was saved, and opened as a file
     assert not RvizConfig.default().shows_whole_robot
     view = config.views.current
     view.values["Distance"] = 2.0
@@ -196,7 +196,7 @@ def test_saved_files_have_equal_data(path: Path, tmp_path):
     config.save(tmp_path / "saved.rviz")
     text = path.read_text(encoding="utf-8")
     assert (tmp_path / "saved.rviz").read_text(encoding="utf-8") == text
-    # One edit is one line, the rest is laid out as RViz does it.
+    # An edit changes one line, and the other lines keep RViz's layout.
     config.options.set(("Frame Rate",), 17)
     changes = [line for line in difflib.ndiff(text.splitlines(), config.text().splitlines()) if line[0] in "+-"]
     assert [line for line in changes if line[0] == "+"] == ["+     Frame Rate: 17"]
@@ -228,7 +228,7 @@ def test_line_endings_and_byte_order_mark_survive_edit(tmp_path):
     assert content.startswith(b"\xef\xbb\xbfPanels: []\r\n")
     assert content.count(b"\n") == content.count(b"\r\n")
     manager = yaml.safe_load(content.decode("utf-8-sig"))["Visualization Manager"]
-    # An alias stood for what was edited; it keeps what it stood for.
+    # The edited section had an alias. The alias keeps the old value.
     assert manager == {"Global Options": {"Fixed Frame": "odom"}, "Other": {"Fixed Frame": "map"}}
 
 

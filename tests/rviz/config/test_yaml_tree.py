@@ -15,7 +15,7 @@ PLAIN = st.recursive(
 )
 
 
-@settings(deadline=None)  # a busy machine is no defect
+@settings(deadline=None)  # a busy machine is slow
 @given(st.dictionaries(st.text(min_size=1, max_size=8), PLAIN, min_size=1, max_size=5))
 def test_unchanged_documents_are_written_back_with_equal_data(data):
     text = yaml.safe_dump(data, allow_unicode=True)
@@ -64,7 +64,7 @@ def test_alias_is_a_copy_of_its_anchor():
     ],
 )
 def test_alias_bombs_and_loops_are_rejected(text, word, monkeypatch):
-    monkeypatch.setattr(yaml_tree, "MAXIMUM_NODES", 50_000)  # a twentieth: so many are made before it is refused
+    monkeypatch.setattr(yaml_tree, "MAXIMUM_NODES", 50_000)  # low, because so many nodes are created
     with pytest.raises(LinkwrightError) as caught:
         yaml_tree.parse(text, "x")
     assert (caught.value.diagnostics[0].code, word in caught.value.diagnostics[0].message) == ("RVIZ102", True)

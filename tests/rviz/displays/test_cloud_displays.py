@@ -84,7 +84,7 @@ async def test_cloud_with_rgb_field_is_shown_in_color():
         display = world.display("PointCloud2")
         assert display.properties.text("Color Transformer") == "RGB8"
         assert colors(display) == [[0x10, 0x20, 0x30, 255]] * 2
-        assert world.viewer.config.text() == config().text()  # nobody asked for that: the file is as it was
+        assert world.viewer.config.text() == config().text()  # the choice was automatic, so the file is unchanged
 
 
 async def test_color_transformers_are_limited_to_fields_of_cloud():

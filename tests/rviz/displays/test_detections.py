@@ -156,23 +156,22 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
         camera = node.create_publisher("sensor_msgs/msg/Image", "/topic", 10)
         detector = node.create_publisher("vision_msgs/msg/Detection2DArray", "/found", 10)
 
-        async def now() -> list:
+        async def settle_and_read() -> list:
             await world.settle()
             facts = {content.fields["kind"]: content for content in contents(world.display("Detections"))}
             shown, boxes = facts.get("image_frame"), facts.get("image_boxes")
             return [shown and shown.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
 
         camera.publish(image(1))
-        assert await now() == [1.0, None, None]
-        detector.publish(
-            detection_message(1, result("ball", 0.5))
-        )  # its image is gone: it was not known that any would come
-        assert await now() == [1.0, 1.0, False]
+        assert await settle_and_read() == [1.0, None, None]
+        # The image is no longer stored, because no detections were expected.
+        detector.publish(detection_message(1, result("ball", 0.5)))
+        assert await settle_and_read() == [1.0, 1.0, False]
         camera.publish(image(2))
         camera.publish(image(3))
-        assert await now() == [1.0, 1.0, False]
+        assert await settle_and_read() == [1.0, 1.0, False]
         detector.publish(detection_message(2, result("ball", 0.5)))
-        assert await now() == [2.0, 2.0, True]
+        assert await settle_and_read() == [2.0, 2.0, True]
         (boxes,) = [
             content for content in contents(world.display("Detections")) if content.fields["kind"] == "image_boxes"
         ]

@@ -42,7 +42,7 @@ def test_display_classes_are_found_by_unique_names():
 
 
 def test_data_displays_are_imported_lazily():
-    """Without these imports, the program answers a browser sooner."""
+    """Without these imports, the program responds to a browser sooner."""
     code = "import sys, linkwright.viewer.viewer; print(*sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     rooms = ("clouds", "image_compression", "markers", "displays.base.topic_display")

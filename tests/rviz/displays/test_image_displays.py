@@ -81,7 +81,7 @@ async def test_image_is_reduced_to_panel_size():
         display.receive(ImageSize(display.id, 30, 18))
         publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
         assert await sizes() == [(32, 24)]
-        display.receive(ImageSize(display.id, 40, 48))  # the last image is shown again, with more of it
+        display.receive(ImageSize(display.id, 40, 48))  # the last image is sent again, with more pixels
         assert await sizes() == [(64, 48)]
 
 
@@ -109,7 +109,7 @@ async def test_hidden_panel_unsubscribes_after_one_image():
         assert publisher.get_subscription_count() == 0
         display.receive(ImageSize(display.id, 3, 1))
         assert publisher.get_subscription_count() == 1
-        assert world.status("Image")["Topic"] == ("ok", "1 messages received"), "what came before is still shown"
+        assert world.status("Image")["Topic"] == ("ok", "1 messages received"), "earlier messages are still counted"
         publisher.publish(small_image(4, 5, 6))
         await world.settle()
         (content,) = contents(display)

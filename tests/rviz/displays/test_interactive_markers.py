@@ -1,4 +1,4 @@
-"""The InteractiveMarkers display, with a server of its own."""
+"""The InteractiveMarkers display, with a server of the test."""
 
 from __future__ import annotations
 

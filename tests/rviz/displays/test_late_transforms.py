@@ -65,7 +65,7 @@ def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[s
     return facts
 
 
-async def every(period: float, call: Callable[[], object]) -> None:
+async def call_periodically(period: float, call: Callable[[], object]) -> None:
     for _ in range(round(SECONDS / period)):
         call()
         await asyncio.sleep(period)
@@ -79,14 +79,14 @@ async def drive(world: World, tf_delay: float) -> None:
     world.move(here)
     await world.settle()
 
-    def sense(cls: str) -> None:
+    def publish_sensor_message(cls: str) -> None:
         publishers[cls].publish(message(cls, now_ns()))
 
     def move_later() -> None:
         asyncio.get_running_loop().call_later(tf_delay, world.move, here)
 
-    sensing = (every(period, partial(sense, cls)) for cls, period in SENSORS.items())
-    await asyncio.gather(*sensing, every(TF_PERIOD, move_later))
+    sensing = (call_periodically(period, partial(publish_sensor_message, cls)) for cls, period in SENSORS.items())
+    await asyncio.gather(*sensing, call_periodically(TF_PERIOD, move_later))
 
 
 @skipping

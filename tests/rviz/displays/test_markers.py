@@ -168,11 +168,11 @@ async def test_marker_disappears_after_lifetime():
         page.look()
         assert sorted(page.markers) == ["a/1", "a/2"]
 
-        def left() -> list[str]:
+        def list_markers() -> list[str]:
             page.look()
             return list(page.markers)
 
-        await eventually(lambda: left() == ["a/2"])
+        await eventually(lambda: list_markers() == ["a/2"])
 
 
 async def test_namespace_checkboxes_follow_file():

@@ -219,7 +219,7 @@ async def test_new_description_replaces_robot_and_frames():
         world.describe(ARM.replace('"mark"', '"point"'))
         scene = await client.until("robot_scene", revision=2)
         assert [link["name"] for link in scene["links"]] == ["base", "tip", "point"]
-        await client.drain()  # the table of frames may come before or after
+        await client.drain()  # the frame table may arrive before or after the scene
         tables = [
             message for message in client.messages if isinstance(message, dict) and message["type"] == "frame_table"
         ]
@@ -410,7 +410,7 @@ async def test_status_names_publisher_of_shown_description():
 
 
 async def test_description_publisher_change_is_reported_after_gid_change():
-    """Then publishers have other GIDs than when their first messages came."""
+    """After the change, publishers have other GIDs than their first messages had."""
     async with open_world(config()) as world:
         first = world.graph.create_node("first")
         publisher = first.create_publisher(String, "robot_description", DESCRIPTION_QOS)

@@ -12,7 +12,7 @@ from tests.viewer.scene import open_world, page
 
 RVIZ = Path(linkwright.rviz.__file__).parent
 _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
-"""The functions that set the text of a status, with the position of the argument for it."""
+"""The functions that set the text of a status, and the index of the argument with the text."""
 
 
 def _is_plain(text: ast.expr) -> bool:

@@ -1,4 +1,4 @@
-"""Displays of messages, by the example of PointStamped."""
+"""Displays of messages, tested with PointStamped."""
 
 from __future__ import annotations
 
@@ -307,7 +307,7 @@ async def test_waiting_displays_query_only_publisher_endpoints(monkeypatch):
         assert described.count(EndpointKind.SUBSCRIPTION) == 0
         before = len(described)
         for display in shown:
-            display._report_count()  # as each does every second
+            display._report_count()  # as each display does every second
         assert len(described) == before
         other.destroy()
         await eventually(lambda: "there is" not in shown[7].status[0].text)

@@ -48,7 +48,7 @@ def config(fixed: str) -> RvizConfig:
 
 
 class Simulation:
-    """Says a world, and where its links are."""
+    """A node that publishes a world and the poses of its links."""
 
     def __init__(self, world) -> None:
         self.world = world
@@ -137,7 +137,7 @@ async def test_world_is_placed_by_robot_frame_without_world_frame():
         half = math.sqrt(0.5)
         world.move({("odom", "base"): (3, 0, 0.5, 0, 0, half, half)})
         await world.settle()
-        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # where it was when tf had it there
+        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # the pose in the world at the time of the transform
         assert world.status("World")["Frame"] == (
             "ok",
             "tf has no frame 'world': the world is placed so that 'base' has the same pose in both",
@@ -235,7 +235,7 @@ async def test_model_files_are_served_and_missing_ones_reported(tmp_path):
         meshes = world.viewer.context.meshes
         assert relative == "meshes/crate.stl"
         assert meshes.file(key, "materials/textures/wood.png") == model / "materials/textures/wood.png"
-        assert meshes.file(key, "meshes/wood.png") == model / "materials/textures/wood.png"  # as Gazebo looks for it
+        assert meshes.file(key, "meshes/wood.png") == model / "materials/textures/wood.png"  # as in Gazebo
         with pytest.raises(Exception, match="only meshes and images"):
             meshes.file(key, "secret.txt")
         level, status = world.status("World")["Files"]
@@ -387,7 +387,7 @@ async def test_lidar_scans_are_subscribed_while_rays_are_drawn():
         assert shown["lidar"] == "scout::head::laser"
         assert shown["ranges"].reshape(16, 44)[1, :3].tolist() == [2000.0, 2023.0, 2046.0]
 
-        revision = sent(world, "world_scene").fields["revision"]  # of a recording the world is told again
+        revision = sent(world, "world_scene").fields["revision"]  # recordings publish the world repeatedly
         simulation.description.publish(String(data=WORLD.replace("</world>", SEEING)))
         await eventually(lambda: sent(world, "world_scene").fields["revision"] > revision)
         assert sent(world, "world_rays") is not None

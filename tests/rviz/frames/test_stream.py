@@ -135,7 +135,7 @@ async def test_updates_are_limited_to_frame_rate_and_last_change_is_sent(rig):
         rig.move(float(x))
         await asyncio.sleep(0.001)
     await asyncio.sleep(0.1)
-    assert 15 <= len(rig.sent()) <= 18  # half a second at 30 Hz, the first at once
+    assert 15 <= len(rig.sent()) <= 18  # half a second at 30 Hz, and the first at once
     assert rig.pose("tip")[0] == x
 
 
@@ -193,11 +193,11 @@ async def test_silent_frames_age(rig):
     assert ages[-1] > 0.6
     count = len(ages)
     await asyncio.sleep(0.6)
-    assert len(rig.ages("tip")) == count  # gone is gone
+    assert len(rig.ages("tip")) == count  # an expired frame is not sent again
     assert set(rig.ages("fix")) == {0.0}  # static frames never age
     rig.move(1.0)
     await rig.settle()
-    assert rig.ages("tip")[-1] < 0.1  # heard of again, though it did not move
+    assert rig.ages("tip")[-1] < 0.1  # the frame is received again, although it did not move
 
 
 @streaming
@@ -252,7 +252,7 @@ async def test_frame_of_single_link_robot_is_sent_without_tf(rig):
     table, transforms, frames = rig.said
     assert (table.names, table.parents) == (["base"], [-1])
     assert transforms.poses.tolist() == [list(IDENTITY)]
-    assert frames.names == ()  # tf does not know it
+    assert frames.names == ()  # tf does not have this frame
     rig.said.clear()
     rig.move(1.0)
     await eventually(lambda: rig.said)

@@ -77,7 +77,7 @@ def test_saved_state_is_tracked_through_undo_and_redo():
     value.set(1)
     value.history.mark_saved()
     assert not value.history.has_unsaved_edits
-    value.set(2)  # not one with the edit before: that one is saved
+    value.set(2)  # not merged with the previous edit, which is saved
     assert value.history.has_unsaved_edits
     value.history.undo()
     assert (value.number, value.history.has_unsaved_edits) == (1, False)
@@ -85,7 +85,7 @@ def test_saved_state_is_tracked_through_undo_and_redo():
     assert value.history.has_unsaved_edits
     value.set(7)
     value.history.undo()
-    assert value.history.has_unsaved_edits  # what was saved cannot be come back to
+    assert value.history.has_unsaved_edits  # the saved state cannot be restored
     value.history.mark_saved()
     assert not value.history.has_unsaved_edits
 

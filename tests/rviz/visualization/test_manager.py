@@ -312,7 +312,7 @@ async def test_group_nesting_depth_is_limited():
 async def test_number_of_displays_is_limited(monkeypatch):
     monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
     async with opened() as (world, client):
-        await edit(client, "duplicate_displays", displays=["display-2"])  # a group with its display
+        await edit(client, "duplicate_displays", displays=["display-2"])  # a group and its display
         for kind, fields in (
             ("duplicate_displays", {"displays": ["display-1"]}),
             ("group_displays", {"displays": ["display-1"], "name": "All"}),

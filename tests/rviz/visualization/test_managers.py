@@ -44,11 +44,11 @@ async def test_page_may_have_own_displays(monkeypatch):
             await own.until("property_changed", id=f"{ids[0]}/Alpha")
             await own.set("global/Fixed Frame", "odom")
             await own.until("configuration")
-            await own.set("display-1/Alpha", 0.9)  # of the others: it has no such display
+            await own.set("display-1/Alpha", 0.9)  # the page does not have this shared display
             assert await shared.drain() == []
             assert world.viewer.config.text() == TEXT
             assert world.viewer._node.get_parameter("fixed_frame").value == "base"
-        async with own_page(world) as again:  # the page was loaded anew
+        async with own_page(world) as again:  # the page was reloaded
             opening = await again.opened()
             assert [display["id"] for display in opening["tree"]["displays"]] == ids
         await eventually(lambda: publisher.get_subscription_count() == 1)
@@ -64,10 +64,10 @@ async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
         for number in range(5):
             async with own_page(world, f"page-number-{number}") as client:
                 await client.opened()
-        await eventually(lambda: publisher.get_subscription_count() == 3)  # for all, and for two that wait
+        await eventually(lambda: publisher.get_subscription_count() == 3)  # for all pages, and two closed pages
         async with own_page(world, "page-number-4") as client:
             opening = await client.opened()
-            assert opening["tree"]["displays"][0]["id"] == "display-21"  # the fifth of four displays each, after four
+            assert opening["tree"]["displays"][0]["id"] == "display-21"  # the page has new displays
 
 
 async def test_page_with_invalid_key_shares_displays():

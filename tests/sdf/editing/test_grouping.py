@@ -44,7 +44,7 @@ def test_nested_and_rotated_groups_keep_link_poses():
     text, names = ungroup(text, "heap")
     assert set(names) == {"pile", "box"}
     text, names = ungroup(text, "pile")
-    assert names == ["box_2", "crate"]  # 'box' is another now
+    assert names == ["box_2", "crate"]  # another model has the name 'box' now
     poses_after = link_poses(text)
     assert poses_after["box_2::link"] == pytest.approx(poses_before["heap::pile::box::link"], abs=1e-8)
     assert poses_after["crate::link"] == pytest.approx(poses_before["heap::pile::crate::link"], abs=1e-8)

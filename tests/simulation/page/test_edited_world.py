@@ -119,10 +119,10 @@ def test_unsaved_changes_are_stored(tmp_path):
     path.write_bytes(codecs.BOM_UTF8 + PLAIN.encode())
     diagnostics = [renamed_world(path, name).store_unsaved(folder) for name in ("a", "b")]
     (file,) = folder.iterdir()
-    assert [each.code for each in diagnostics] == ["RVIZ301", "RVIZ301"]
+    assert [diagnostic.code for diagnostic in diagnostics] == ["RVIZ301", "RVIZ301"]
     assert f"'{path}'" in diagnostics[0].message
     assert f"'{file}'" in diagnostics[0].message
     assert file.read_bytes() == codecs.BOM_UTF8 + PLAIN.replace("'box'", "'b'").encode()
     (tmp_path / "file").touch()
-    each = renamed_world(path).store_unsaved(tmp_path / "file" / "unsaved")
-    assert (each.code, "cannot write" in each.message) == ("RVIZ104", True)
+    diagnostic = renamed_world(path).store_unsaved(tmp_path / "file" / "unsaved")
+    assert (diagnostic.code, "cannot write" in diagnostic.message) == ("RVIZ104", True)

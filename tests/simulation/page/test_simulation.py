@@ -49,7 +49,7 @@ class FakeSimulator:
             if not response.success:
                 response.status_message = "there is no model 'nobody'"
         if name == "/set_entity_state":
-            response.success = request.state.name != "ground"  # its answer has no text
+            response.success = request.state.name != "ground"  # the response has no message
         if name == "/get_model_list":
             response.model_names = ["ground", "ground_2"]
         if name == "/get_entity_state":

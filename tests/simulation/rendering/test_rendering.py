@@ -141,14 +141,14 @@ PANEL = """<model name="panel"><static>true</static><pose>2 0 0 0 0 0</pose><lin
 def test_meshes_are_textured(make_new, tmp_path, kind, request):
     (tmp_path / "quad.obj").write_text(QUAD)
     image = Image.new("RGB", (64, 64), (255, 0, 0))
-    image.paste((0, 0, 255), (32, 0, 64, 64))  # the right half, on the left as seen by the camera
+    image.paste((0, 0, 255), (32, 0, 64, 64))  # the right half of the image, which the camera sees on the left
     image.save(tmp_path / "halves.png")
     simulation = make_simulation(PANEL.format(folder=tmp_path, kind=kind, image="halves.png"))
     assert not simulation.scene.diagnostics
     color = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
     left, right = color[60, 60], color[60, 100]
     assert left[1] == right[1] == 0
-    if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # rays: one color a shape
+    if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # these renderers draw each shape in one color
         assert left[0] == left[2] > 50
         return
     assert left[2] > 50
@@ -169,7 +169,7 @@ def test_missing_texture_is_reported_once(tmp_path):
 
 
 QUARTERS = ((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0))
-"""The colors of an image: above left and right, below left and right."""
+"""The colors of an image: top left, top right, bottom left, bottom right."""
 TEXTURED = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
 <geometry>{shape}</geometry><material><pbr><metal><albedo_map>file://{image}</albedo_map></metal></pbr></material></visual></link></model>"""
 
@@ -194,7 +194,7 @@ def test_primitive_shapes_are_textured(make_new, tmp_path, shape, distance, orde
     assert not simulation.scene.diagnostics
     image = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
     assert image.depth[60, 80] == pytest.approx(distance, abs=2e-3)
-    if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # rays: one color a shape
+    if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # these renderers draw each shape in one color
         red, green, blue = image.color[60, 80].astype(int)
         assert red == green > 0
         assert blue == pytest.approx(red / 2, abs=2)
@@ -337,9 +337,8 @@ def test_round_shapes_match_mujoco(draw_with_opengl, monkeypatch, light):
     is_visible = np.isfinite(our_image.depth) & np.isfinite(mujoco_image.depth)
     assert our_image.depth[is_visible] == pytest.approx(mujoco_image.depth[is_visible], abs=1e-3)
     assert (np.isfinite(our_image.depth) != is_visible).sum() < 20
-    assert (
-        our_count < mujoco_count if not light else our_count != mujoco_count
-    )  # MuJoCo draws quads, Linkwright triangles
+    # MuJoCo draws quads, and Linkwright draws triangles.
+    assert our_count < mujoco_count if not light else our_count != mujoco_count
 
 
 def test_point_light_lights_nearby_objects(make_new):
@@ -378,7 +377,7 @@ def test_resting_and_moving_models_are_rendered_at_current_pose(make_new):
     renderer, optics = make_new(simulation), optics_of(CAMERA)
 
     def depths():
-        """Return the depth image of the renderer so far, and that of a new renderer."""
+        """Return the depth images of the existing renderer and of a new renderer."""
         return tuple(
             candidate.render(optics, IDENTITY, Channels.DEPTH).depth for candidate in (renderer, make_new(simulation))
         )

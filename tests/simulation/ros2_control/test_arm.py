@@ -79,7 +79,7 @@ class Arm:
     def __init__(self, server: Any, graph: Any) -> None:
         self.server, self.graph, self.node = server, graph, graph.create_node("audience")
 
-    async def begin(self, interface: str, wait: float = 0.02) -> None:
+    async def start_controller(self, interface: str, wait: float = 0.02) -> None:
         """Start the controller; ``wait`` is the simulated time after each call, in s."""
         node = self.graph.create_node("robot_state_publisher")
         node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=description(interface)))
@@ -118,7 +118,7 @@ class Arm:
 
 async def test_controller_can_start_before_first_update(tmp_path):
     async with running_server(model(write_parameters("position", tmp_path))) as (server, graph, log):
-        await Arm(server, graph).begin("position", wait=0.0)
+        await Arm(server, graph).start_controller("position", wait=0.0)
         assert server.simulation.time == 0
         assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
 
@@ -130,7 +130,7 @@ STATE = "control_msgs/msg/JointTrajectoryControllerState"
 async def test_arm_follows_trajectory_against_gravity(interface, tmp_path):
     async with running_server(model(write_parameters(interface, tmp_path))) as (server, graph, _):
         arm = Arm(server, graph)
-        await arm.begin(interface)
+        await arm.start_controller(interface)
         states: list[Any] = []
         graph.create_node("listener").create_subscription(STATE, "/arm/controller_state", states.append, 10)
         future = arm.call((2.0, [-0.6, 0.9], [0.0, 0.0]))
@@ -148,7 +148,7 @@ async def test_arm_follows_trajectory_against_gravity(interface, tmp_path):
 async def test_canceled_goal_stops_arm(tmp_path):
     async with running_server(model(write_parameters("position", tmp_path))) as (server, graph, _):
         arm = Arm(server, graph)
-        await arm.begin("position")
+        await arm.start_controller("position")
         future = arm.call((2.0, [-0.6, 0.9]))
         await arm.advance(1.0)
         future.cancel()
@@ -164,7 +164,7 @@ async def test_trajectory_is_bitwise_reproducible(tmp_path):
     async def run() -> list[float]:
         async with running_server(model(write_parameters("effort", tmp_path))) as (server, graph, _):
             arm = Arm(server, graph)
-            await arm.begin("effort")
+            await arm.start_controller("effort")
             arm.call((1.0, [-0.3, 0.4]))
             await arm.advance(1.5)
             return arm.positions()

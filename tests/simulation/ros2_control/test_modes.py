@@ -35,7 +35,7 @@ def angle(server) -> float:
 
 @pytest.mark.parametrize(
     ("interfaces", "min_angle"),
-    [("", 0.5), ("<command_interface name='velocity'/>", 0.03)],  # the rotor of a motor turns with the joint
+    [("", 0.5), ("<command_interface name='velocity'/>", 0.03)],  # a motor's rotor slows the joint
     ids=["effort", "effort and velocity"],
 )
 async def test_unclaimed_effort_joint_is_held_and_released_by_controller(write_parameters, interfaces, min_angle):
@@ -76,6 +76,6 @@ async def test_position_proportional_gain_approaches_gradually(write_parameters)
         await world.start("arm")
         await world.command(1.0, topic="/arm/commands")
         await world.advance(0.08)
-        assert 0.3 < angle(server) < 1.0 - 0.9**10  # without the gain it would be 0.9
+        assert 0.3 < angle(server) < 1.0 - 0.9**10  # without the gain, the first step would be 0.9
         await world.advance(1.0)
         assert angle(server) == pytest.approx(1.0, abs=0.01)

@@ -45,13 +45,12 @@ async def test_pid_moves_joint_to_command_and_stops_with_controller(tmp_path, ki
             description_with_gains(kind) if is_in_description else description(wheel("left_joint", kind))
         )
         await world.start("arm")
-        server.simulation.push("mbot::base_link", (0.0, 0.0, 40.0), by="test")  # the wheels are in the air
+        server.simulation.push("mbot::base_link", (0.0, 0.0, 40.0), by="test")  # lift the wheels into the air
         await world.command(1.5, topic="/arm/commands")
         await world.advance(0.02)
         position, velocity = server.simulation.joint_state("mbot::left_joint")
-        assert (
-            0.0 < (position if kind == "position" else velocity) < 1.2
-        )  # the joint is pushed, its position is not set
+        # The controller pushes the joint, and does not set its position or velocity.
+        assert 0.0 < (position if kind == "position" else velocity) < 1.2
         await world.advance(2.0)
         position, velocity = server.simulation.joint_state("mbot::left_joint")
         assert (position if kind == "position" else velocity) == pytest.approx(1.5, abs=0.15)

@@ -140,7 +140,7 @@ def test_force_torque_sensor_measures_suspended_weight(direction: str, sign: int
 def test_geodetic_positions_match_wgs_84():
     globe = Globe(SphericalCoordinates(latitude_deg=0.0, longitude_deg=0.0))
     assert globe.geodetic(np.zeros(3)) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
-    # A degree at the equator is 110 574.3 m to the north and 111 319.5 m to the east; over 10 m the arc is straight.
+    # At the equator, a degree is 110 574.3 m to the north and 111 319.5 m to the east. Over 10 m the arc is straight.
     assert globe.geodetic(np.array([0.0, 10.0, 5.0])) == pytest.approx((10 / 110574.276, 0.0, 5.0), abs=1e-5)
     assert globe.geodetic(np.array([10.0, 0.0, 0.0])) == pytest.approx((0.0, 10 / 111319.491, 0.0), abs=1e-5)
     high = Globe(SphericalCoordinates(latitude_deg=47.5, longitude_deg=8.5, elevation=430.0))

@@ -27,7 +27,7 @@ CAMERA = (
 )
 
 
-def carrier(*elements: str, link: str = "head", extra: str = "") -> str:
+def robot_with(*elements: str, link: str = "head", extra: str = "") -> str:
     """Return a fixed robot whose link has these elements."""
     return f'<model name="robot"><static>true</static><link name="{link}">{"".join(elements)}</link>{extra}</model>'
 
@@ -62,7 +62,7 @@ async def last_messages(server: SimulationServer, graph: Graph, *topics: str, du
 
 async def test_classic_ray_sensor_publishes_scan():
     ros = "<ros><remapping>~/out:=scan</remapping></ros><output_type>sensor_msgs/LaserScan</output_type>"
-    text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so", ros)))
+    text = robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so", ros)))
     async with running_server(WALL, text) as (server, graph, log):
         (scan,) = await last_messages(server, graph, "/scan")
         assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND // 10)
@@ -76,7 +76,7 @@ async def test_classic_ray_sensor_publishes_scan():
 
 
 async def test_ray_sensor_does_not_publish_without_subscribers():
-    text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
+    text = robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
     async with running_server(WALL, text) as (server, graph, _):
         server.advance(SECOND)
         recording = Recording(graph, server.node, "/driver/out")
@@ -92,7 +92,7 @@ async def test_displayed_rays_and_scan_share_one_measurement(visualize: str, top
         "</horizontal><vertical><samples>2</samples><min_angle>0</min_angle><max_angle>0</max_angle></vertical>",
     )
     text = sensor("gpu_lidar", f"<visualize>{visualize}</visualize><topic>scan</topic><lidar>{two_rows}</lidar>")
-    async with running_server(WALL, carrier(text)) as (server, graph, _):
+    async with running_server(WALL, robot_with(text)) as (server, graph, _):
         (lidar,) = server.plugins("robot")
         measurements = []
         measure = lidar.lidar.measure
@@ -107,7 +107,7 @@ async def test_displayed_rays_and_scan_share_one_measurement(visualize: str, top
 
 
 async def test_lidar_measures_while_only_its_rays_are_displayed():
-    text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
+    text = robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
     async with running_server(WALL, text) as (server, graph, _):
         (rays,) = await last_messages(server, graph, "/world_rays/others")
         assert list(rays.ranges) == [inf, 2.0, inf]
@@ -118,7 +118,7 @@ async def test_ray_sensor_output_types(kind: str):
     element = plugin(
         "libgazebo_ros_ray_sensor.so", f"<output_type>sensor_msgs/{kind}</output_type><frame_name>l</frame_name>"
     )
-    async with running_server(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, _):
+    async with running_server(WALL, robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, _):
         (message,) = await last_messages(server, graph, "/driver/out")
         assert message.header.frame_id == "l"
         if kind == "Range":
@@ -132,14 +132,14 @@ async def test_ray_sensor_output_types(kind: str):
 
 async def test_invalid_output_type_is_reported():
     element = plugin("libgazebo_ros_ray_sensor.so", "<output_type>sensor_msgs/Imu</output_type>")
-    async with running_server(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, _, log):
+    async with running_server(robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, _, log):
         assert server.plugins("robot") == ()
         assert "is not an output type" in str(log[0].text)
 
 
 async def test_ros_1_laser_has_its_topic_and_frame():
     element = plugin("libgazebo_ros_laser.so", "<topicName>/laser</topicName><frameName>hokuyo</frameName>")
-    async with running_server(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
+    async with running_server(WALL, robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
         (scan,) = await last_messages(server, graph, "/laser")
         assert (scan.header.frame_id, scan.ranges[1]) == ("hokuyo", 2.0)
         assert not log
@@ -150,9 +150,9 @@ async def test_ros_1_laser_has_its_topic_and_frame():
     ["block_laser", "range", "velodyne_laser"],
 )
 async def test_ros_1_laser_plugins_publish_their_message_types(library: str):
-    element = plugin(f"libgazebo_ros_{library}.so", "<topicName>/told</topicName><frameName>hokuyo</frameName>")
-    async with running_server(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
-        (message,) = await last_messages(server, graph, "/told")
+    element = plugin(f"libgazebo_ros_{library}.so", "<topicName>/scan</topicName><frameName>hokuyo</frameName>")
+    async with running_server(WALL, robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + element))) as (server, graph, log):
+        (message,) = await last_messages(server, graph, "/scan")
         assert message.header.frame_id == "hokuyo"
         if library == "range":
             assert (message.range, message.radiation_type) == (2.0, message.ULTRASOUND)
@@ -185,9 +185,13 @@ LASERS = RAYS.replace(
 
 
 async def test_velodyne_points_have_ring():
-    element = plugin("libgazebo_ros_velodyne_laser.so", "<topicName>/told</topicName>")
-    async with running_server(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
-        (message,) = await last_messages(server, graph, "/told")
+    element = plugin("libgazebo_ros_velodyne_laser.so", "<topicName>/points</topicName>")
+    async with running_server(WALL, robot_with(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (
+        server,
+        graph,
+        log,
+    ):
+        (message,) = await last_messages(server, graph, "/points")
         rows = rows_of(message)
         assert (message.height, message.width, message.is_dense) == (1, 2, True)
         assert rows["ring"].tolist() == [0, 1]
@@ -197,10 +201,14 @@ async def test_velodyne_points_have_ring():
 
 
 async def test_organized_velodyne_cloud_has_row_per_firing():
-    settings = "<topicName>/told</topicName><organize_cloud>true</organize_cloud><max_range>5</max_range>"
+    settings = "<topicName>/points</topicName><organize_cloud>true</organize_cloud><max_range>5</max_range>"
     element = plugin("libgazebo_ros_velodyne_laser.so", settings)
-    async with running_server(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (server, graph, log):
-        (message,) = await last_messages(server, graph, "/told")
+    async with running_server(WALL, robot_with(sensor("ray", f"<ray>{LASERS}</ray>" + element))) as (
+        server,
+        graph,
+        log,
+    ):
+        (message,) = await last_messages(server, graph, "/points")
         rows = rows_of(message).reshape(message.height, message.width)
         assert (message.height, message.width, message.is_dense) == (3, 2, False)
         assert rows["ring"].tolist() == [[0, 1]] * 3
@@ -209,7 +217,7 @@ async def test_organized_velodyne_cloud_has_row_per_firing():
 
 
 async def test_gz_lidar_publishes_points_beside_scan():
-    text = carrier(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
+    text = robot_with(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
     async with running_server(WALL, text) as (server, graph, log):
         scan, cloud = await last_messages(server, graph, "/lidar", "/lidar/points")
         assert scan.header.frame_id == "robot/head/eye"
@@ -221,7 +229,7 @@ async def test_gz_lidar_publishes_points_beside_scan():
 
 
 async def test_gz_sensor_without_topic_has_default_gz_name():
-    async with running_server(WALL, carrier(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
+    async with running_server(WALL, robot_with(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
         (scan,) = await last_messages(server, graph, "/world/test/model/robot/link/head/sensor/eye/scan")
         assert scan.ranges[1] == 2.0
 
@@ -332,7 +340,7 @@ EARTH = (
 ])  # fmt: skip
 async def test_navsat_sensors_publish_position(kind: str, library: str | None, topic: str):
     element = sensor(kind, plugin(library) if library else "<topic>/gps/fix</topic>")
-    async with running_server(EARTH, carrier(element)) as (server, graph, log):
+    async with running_server(EARTH, robot_with(element)) as (server, graph, log):
         (fix,) = await last_messages(server, graph, topic)
         assert (fix.latitude, fix.longitude, fix.altitude) == pytest.approx((47.5, 8.5, 430.0))
         assert not log
@@ -340,7 +348,7 @@ async def test_navsat_sensors_publish_position(kind: str, library: str | None, t
 
 async def test_magnetometer_publishes_field_in_its_axes():
     element = sensor("magnetometer", f"<pose>0 0 0 0 0 {pi / 2}</pose><topic>mag</topic>")
-    async with running_server("<magnetic_field>1 2 3</magnetic_field>", carrier(element)) as (server, graph, _):
+    async with running_server("<magnetic_field>1 2 3</magnetic_field>", robot_with(element)) as (server, graph, _):
         (message,) = await last_messages(server, graph, "/mag")
         field = message.magnetic_field
         assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))
@@ -373,8 +381,8 @@ def pixels_of(message) -> np.ndarray:
 
 
 async def test_classic_camera_publishes_image_and_camera_info():
-    expected = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
-    text = carrier(sensor("camera", CAMERA + plugin("libgazebo_ros_camera.so", expected)))
+    settings = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
+    text = robot_with(sensor("camera", CAMERA + plugin("libgazebo_ros_camera.so", settings)))
     async with running_server(WALL, text) as (server, graph, log):
         image, info = await last_messages(server, graph, "/front/image_raw", "/front/camera_info")
         assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
@@ -395,7 +403,7 @@ async def test_classic_camera_publishes_image_and_camera_info():
 )
 async def test_image_format_sets_encoding(image_format: str, encoding: str, step: int):
     camera = CAMERA.replace("</height>", f"</height><format>{image_format}</format>")
-    async with running_server(WALL, carrier(sensor("camera", camera + plugin("libgazebo_ros_camera.so")))) as (
+    async with running_server(WALL, robot_with(sensor("camera", camera + plugin("libgazebo_ros_camera.so")))) as (
         server,
         graph,
         _,
@@ -408,7 +416,7 @@ async def test_image_format_sets_encoding(image_format: str, encoding: str, step
 async def test_depth_camera_measures_along_optical_axis(library: str):
     element = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
     near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
-    async with running_server(WALL, near, carrier(sensor("depth", CAMERA + element))) as (server, graph, _):
+    async with running_server(WALL, near, robot_with(sensor("depth", CAMERA + element))) as (server, graph, _):
         depth, cloud = await last_messages(server, graph, "/depth/depth/image_raw", "/depth/points")
         meters = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
         assert (depth.encoding, depth.step) == ("32FC1", 256)
@@ -424,7 +432,7 @@ async def test_depth_camera_measures_along_optical_axis(library: str):
 
 async def test_triggered_camera_waits_for_trigger():
     element = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
-    async with running_server(WALL, carrier(sensor("camera", CAMERA + element))) as (server, graph, _):
+    async with running_server(WALL, robot_with(sensor("camera", CAMERA + element))) as (server, graph, _):
         recording = Recording(graph, server.node, "/eye/image_raw")
         server.advance(SECOND)
         await graph.settle()
@@ -440,14 +448,14 @@ async def test_triggered_camera_waits_for_trigger():
 async def test_multicamera_has_topic_per_camera():
     eyes = CAMERA.replace("<camera>", '<camera name="left">') + CAMERA.replace("<camera>", '<camera name="right">')
     element = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
-    async with running_server(WALL, carrier(sensor("multicamera", eyes + element))) as (server, graph, _):
+    async with running_server(WALL, robot_with(sensor("multicamera", eyes + element))) as (server, graph, _):
         left, right = await last_messages(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
         assert (left.width, right.width) == (64, 64)
 
 
 async def test_gz_camera_publishes_camera_info_beside_image():
     eye = CAMERA.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
-    async with running_server(WALL, carrier(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (
+    async with running_server(WALL, robot_with(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (
         server,
         graph,
         _,
@@ -458,7 +466,7 @@ async def test_gz_camera_publishes_camera_info_beside_image():
 
 
 async def test_gz_rgbd_camera_points_have_x_forward():
-    text = carrier(sensor("rgbd_camera", f"<topic>rgbd</topic>{CAMERA}"))
+    text = robot_with(sensor("rgbd_camera", f"<topic>rgbd</topic>{CAMERA}"))
     async with running_server(WALL, text) as (server, graph, log):
         image, depth, cloud, info = await last_messages(
             server, graph, "/rgbd/image", "/rgbd/depth_image", "/rgbd/points", "/rgbd/camera_info"
@@ -478,7 +486,7 @@ def labeled_block(name: str, pose: str, label: int) -> str:
 
 async def test_segmentation_camera_shows_labels_and_background():
     world = labeled_block("cup", "2 0.5 0 0 0 0", 7), labeled_block("other", "2 -0.5 0 0 0 0", 7), WALL
-    text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{CAMERA}"))
+    text = robot_with(sensor("segmentation_camera", f"<topic>seg</topic>{CAMERA}"))
     async with running_server(*world, text) as (server, graph, _):
         maps, colored = await last_messages(server, graph, "/seg/labels_map", "/seg/colored_map")
         assert set(pixels_of(maps).reshape(-1).tolist()) == {0, 7}
@@ -488,12 +496,13 @@ async def test_segmentation_camera_shows_labels_and_background():
 
 async def test_bounding_boxes_enclose_labeled_models():
     world = labeled_block("cup", "1.55 0.5 0 0 0 0", 7), labeled_block("ball", "1.55 -0.5 0 0 0 0", 9), WALL
-    text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{CAMERA}"))
+    text = robot_with(sensor("boundingbox_camera", f"<topic>boxes</topic>{CAMERA}"))
     async with running_server(*world, text) as (server, graph, _):
         boxes, image = await last_messages(server, graph, "/boxes", "/boxes_image")
         bounding_boxes = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
         assert sorted(bounding_boxes) == ["7", "9"]
-        # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the image.
+        # The boxes are 0.4 m wide and 1.5 m away. With a focal length of 32 pixels, they are 8.5 pixels wide, and 10.7
+        # pixels from the center of the image.
         left, right = bounding_boxes["7"], bounding_boxes["9"]
         assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
         assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
@@ -502,7 +511,7 @@ async def test_bounding_boxes_enclose_labeled_models():
 
 async def test_image_noise_is_reproducible_for_same_seed():
     noise = "<noise><type>gaussian</type><mean>0</mean><stddev>0.02</stddev></noise>"
-    text = carrier(
+    text = robot_with(
         sensor("camera", CAMERA.replace("</camera>", noise + "</camera>") + plugin("libgazebo_ros_camera.so"))
     )
     images = []
@@ -531,7 +540,7 @@ async def test_logical_camera_lists_models_in_view():
         box(name, f"{position} 0 0 0", "0.1 0.1 0.1").replace("<link", "<static>true</static><link", 1)
         for name, position in POSITIONS.items()
     ]
-    async with running_server(carrier(sensor("logical_camera", camera)), *boxes) as (server, graph, log):
+    async with running_server(robot_with(sensor("logical_camera", camera)), *boxes) as (server, graph, log):
         (image,) = await last_messages(server, graph, "/seen")
         (image_model,) = image.model
         assert image_model.name == "ahead"

@@ -80,8 +80,8 @@ def test_utterance_class_is_returned_as_phrase(names, tmp_path):
 
 def test_uncertain_or_unlisted_class_gives_empty_text(tmp_path):
     engine = OnnxEngine(EngineOptions(("stop",), "en", network(tmp_path / "net.onnx")))
-    assert [result.text for result in results_of(engine, sound(12_000))] == [""]  # a class, and no phrase
-    assert [result.text for result in results_of(engine, sound(1_500))] == [""]  # no class for sure
+    assert [result.text for result in results_of(engine, sound(12_000))] == [""]  # the class is not a phrase
+    assert [result.text for result in results_of(engine, sound(1_500))] == [""]  # no class has enough confidence
     assert results_of(engine, np.zeros(3 * RATE, np.int16)) == []
 
 

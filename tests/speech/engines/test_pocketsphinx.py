@@ -16,7 +16,7 @@ from linkwright.speech.engine import EngineOptions, engine_names
 from linkwright.speech.engines.pocketsphinx_engine import PocketsphinxEngine
 from tests.speech.voices import WORDS, say
 
-pocketsphinx = pytest.importorskip("pocketsphinx", reason="there is no wheel of it here")
+pocketsphinx = pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
 FRAME = 480
 SPEECH, QUIET = np.full(FRAME, 1_000, np.int16), np.zeros(FRAME, np.int16)

@@ -47,7 +47,7 @@ def samples(messages):
 
 async def test_file_is_published_at_clock_rate(test, wav):
     start(test, file=wav)
-    await test.advance(1.0)  # without subscriptions
+    await test.advance(1.0)  # sound without subscriptions is not stored
     info, audio, audio_stamped = (test.record(f"/{name}") for name in ("audio_info", "audio", "audio_stamped"))
     await test.advance(0.5)
     assert len(audio) == len(audio_stamped) == 5

@@ -48,7 +48,7 @@ async def test_press_with_gap_asks_to_repeat(engine, talk):
     await robot.hold(True)
     for index in range(5):
         await robot.process(stamp=10.0 + 0.1 * index)
-    await robot.process(stamp=10.6)  # a tenth of a second is missing, long before what is heard
+    await robot.process(stamp=10.6)  # a tenth of a second is missing before this block
     engine.results_at_end.append(final("", start=5.0, nearest="forward"))
     await robot.hold(False)
     await eventually(lambda: robot.texts_by_topic["response"])

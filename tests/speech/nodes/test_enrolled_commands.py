@@ -14,7 +14,7 @@ from tests.speech.voices import WORDS, say
 from tests.waiting import eventually
 
 AFTER = 0.8
-"""Seconds of silence before and after a word."""
+"""The seconds of silence before and after a word."""
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ async def test_stop_is_executed_within_300_ms_of_word(robot):
     await wait_for_commands(robot, "forward")
     sound = spoken_word("stop")
     end = len(sound) - int(AFTER * RATE)
-    await play(robot, sound[: end + int(0.3 * RATE)])  # no more is heard: it is known by then
+    await play(robot, sound[: end + int(0.3 * RATE)])  # the word is recognized before its silence ends
     await wait_for_commands(robot, "forward", "stop")
     assert robot.speed == (0.0, 0.0, 0.0)
 
@@ -92,7 +92,7 @@ async def test_noise_and_unknown_words_do_not_drive_robot(robot):
         await eventually(
             lambda count=before: len(robot.texts_by_topic["text"]) > count, what=lambda: robot.texts_by_topic
         )
-    # What is heard in order is done in order: so this is the first command of all.
+    # Commands are executed in the order of the sound, so the earlier words were not commands.
     await play(robot, spoken_word("back"))
     await wait_for_commands(robot, "backward")
     assert set(robot.texts_by_topic["text"]) == {"", "back"}

@@ -70,7 +70,7 @@ async def test_silence_timeout_stops_robot(stage, talk):
     assert robot.texts_by_topic["response"][-1] == "I hear nothing, so I am stopping"
 
 
-def travelled(robot):
+def travelled_distance(robot):
     """Return the meters and radians of the published velocities, each for 50 ms."""
     return sum(velocity.linear.x for velocity in robot.velocities) * 0.05, sum(
         velocity.angular.z for velocity in robot.velocities
@@ -91,7 +91,7 @@ async def test_distance_without_odometry_is_speed_times_time(stage, talk, text, 
     await robot.send_text(text)
     await stage.clock.advance(40.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert travelled(robot) == pytest.approx((distance, angle), abs=0.02)
+    assert travelled_distance(robot) == pytest.approx((distance, angle), abs=0.02)
 
 
 class SlippingRobot:
@@ -144,7 +144,7 @@ async def test_speed_commands_change_speed(talk):
     for _ in range(20):
         await robot.send_text("faster")
     await robot.send_text("forward")
-    assert robot.speed[0] == pytest.approx(0.8), "four times as fast, and no faster"
+    assert robot.speed[0] == pytest.approx(0.8), "the speed is limited to four times the default"
 
 
 async def test_closing_node_stops_robot(stage, talk):

@@ -195,7 +195,7 @@ def test_sound_budget_grows_with_time():
     budget = floor.SoundBudget(lambda: time)
     for _ in range(10_000):
         time += 0.1
-        assert budget.spend(0.1, 0.1)  # a machine so busy that there is nothing but silence
+        assert budget.spend(0.1, 0.1)  # the sound is all silence, as on a very busy machine
     assert all(budget.spend(0.1, 0.0) for _ in range(99))
     assert not budget.spend(0.2, 0.0)
 

@@ -86,7 +86,7 @@ def test_lights_option_keeps_lights_and_background(tmp_path):
     sky = (lit == [0, 255, 255]).all(axis=1)
     assert sky.any()
     ground = lit[~sky & (lit[:, 0] > 60)]
-    assert (ground[:, 0] > 1.3 * ground[:, 1]).mean() > 0.9, "red light"
+    assert (ground[:, 0] > 1.3 * ground[:, 1]).mean() > 0.9, "the light is red"
     assert not (pixels[()] == [0, 255, 255]).all(axis=1).any()
 
 
@@ -141,7 +141,7 @@ def test_same_seed_gives_identical_files(source, tmp_path):
 
 @pytest.mark.parametrize("way", ["OpenGL", "Embree", "MuJoCo"])
 def test_image_does_not_depend_on_previous_images(source, monkeypatch, way):
-    if way != "OpenGL":  # as on macOS and Windows
+    if way != "OpenGL":  # without OpenGL, as on macOS and Windows
         monkeypatch.setenv("MUJOCO_GL", "disable")
     if way == "MuJoCo":
         monkeypatch.setitem(sys.modules, "embreex", None)

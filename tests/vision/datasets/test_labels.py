@@ -1,4 +1,4 @@
-"""Labels are exact: against shapes that are projected, and against another renderer."""
+"""Labels are exact, compared with projected shapes and with another renderer."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def labeled(world, arrangement):
     return label_image(world, arrangement, geoms, OPTIONS.min_size, OPTIONS.min_visible), geoms
 
 
-def alone(arrangement, movable):
+def arrange_alone(arrangement, movable):
     return Arrangement(arrangement.optics, arrangement.pose, (movable,), ())
 
 
@@ -62,7 +62,7 @@ def test_box_of_mask_is_computed():
 
 
 def test_full_boxes_of_balls_match_projected_outlines(world):
-    """The outline of a ball is the cone of tangent rays: its ends are known exactly."""
+    """The cone of tangent rays gives the exact outline of a ball."""
     compared = 0
     for arrangement in shots(world, 12):
         labels, _ = labeled(world, arrangement)
@@ -96,7 +96,7 @@ def is_covered(world, arrangement, movable):
 
 
 def outline(across, ahead, radius):
-    """Return the smallest and the largest slope of rays in a plane that touch a circle."""
+    """Return the minimum and maximum slope of the rays in a plane that touch a circle."""
     distance = np.hypot(across, ahead)
     middle, half = np.arctan2(across, ahead), np.arcsin(min(radius / distance, 1.0))
     return np.tan(middle - half), np.tan(middle + half)
@@ -146,7 +146,7 @@ def test_unoccluded_objects_are_fully_visible(world):
             for other in arrangement.placed_objects:
                 if other is not movable:
                     world.hide(other.geoms)
-            labels, _ = labeled(world, alone(arrangement, movable))
+            labels, _ = labeled(world, arrange_alone(arrangement, movable))
             assert all(label.visibility > 0.97 or label.is_truncated for label in labels)
             break
 
@@ -178,7 +178,7 @@ def test_sign_is_ignored_unless_its_plate_is_visible(tmp_path, height, focal, ig
         (label,) = label_image(world, arrangement, geoms, 12, 0.3)
     finally:
         world.close()
-    assert label.visibility >= 0.3  # of the whole sign; without its plate it is a pole
+    assert label.visibility >= 0.3  # the whole sign is visible enough; without its plate, it is a pole
     assert label.is_ignored == ignored
 
 
@@ -194,7 +194,7 @@ def test_distractors_do_not_resemble_balls_and_drums(world):
 
 
 def test_few_objects_are_placed_behind_walls(world):
-    """The wall of the yard is 6 m long, 3 m ahead of its middle."""
+    """The wall of the yard is 6 m long, and 3 m from the center of the yard."""
     behind = objects = 0
     for arrangement in shots(world, 40):
         for movable in arrangement.placed_objects:

@@ -1,4 +1,4 @@
-"""Networks in ONNX files: each layout, number by number against onnxruntime called by hand and a slow decoder."""
+"""Networks in ONNX files: each layout, compared with direct calls of onnxruntime and a slow decoder."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ def overlap(first, second):
     return common / whole
 
 
-def slowly(rows, classes, limits, objectness=False):
-    """Boxes, one after the other: (score, class, corners in the input)."""
+def slow_boxes(rows, classes, limits, objectness=False):
+    """Return the boxes by a slow reference algorithm: (score, class, corners in the input)."""
     detections = []
     for row in rows:
         scores = [float(row[4 + objectness + index]) * (float(row[4]) if objectness else 1) for index in range(classes)]
@@ -99,7 +99,7 @@ def test_yolov8_columns_are_decoded(tmp_path, image):
     detector = opened(path)
     assert detector.names == ("ball", "box", "cat")
     assert detector.notes == ()
-    check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
+    check(detector.detect(image, LIMITS), slow_boxes(output[0].T, 3, LIMITS), image, *place)
 
 
 def test_yolov5_rows_with_objectness_are_decoded(tmp_path, image):
@@ -107,7 +107,7 @@ def test_yolov5_rows_with_objectness_are_decoded(tmp_path, image):
     path = columns(tmp_path / "v5.onnx", transposed=True, objectness=True, metadata={"names": "['ball', 'box', 'cat']"})
     output, *place = by_hand(path, image, 96, 128)
     assert output.shape == (1, 756, 8)
-    check(opened(path).detect(image, limits), slowly(output[0], 3, limits, True), image, *place)
+    check(opened(path).detect(image, limits), slow_boxes(output[0], 3, limits, True), image, *place)
 
 
 def test_yolov5_with_one_class_is_not_mistaken_for_final_boxes(tmp_path, image):
@@ -116,7 +116,7 @@ def test_yolov5_with_one_class_is_not_mistaken_for_final_boxes(tmp_path, image):
     output, *_ = by_hand(path, image, 96, 128)
     assert output.shape == (1, 756, 6)
     detections = opened(path).detect(image, limits)
-    assert len(detections) == len(slowly(output[0], 1, limits, True))
+    assert len(detections) == len(slow_boxes(output[0], 1, limits, True))
 
 
 @pytest.mark.parametrize("message", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
@@ -141,13 +141,13 @@ def test_dynamic_input_has_smallest_size_for_image(tmp_path, image):
     output, *place = by_hand(path, image, 128, 160, padded=32)
     assert output.shape[2] == 12 * 20 + 6 * 10 + 3 * 5  # 96 x 160
     detections = opened(path, size=(120, 160)).detect(image, LIMITS)
-    check(detections, slowly(output[0].T, 3, LIMITS), image, *place)
+    check(detections, slow_boxes(output[0].T, 3, LIMITS), image, *place)
 
 
 def test_half_precision_network_is_decoded(tmp_path, image):
     path = columns(tmp_path / "half.onnx", metadata=NAMES, half=True)
     output, *place = by_hand(path, image, 96, 128)
-    check(opened(path).detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place, tolerance=1e-2)
+    check(opened(path).detect(image, LIMITS), slow_boxes(output[0].T, 3, LIMITS), image, *place, tolerance=1e-2)
 
 
 @pytest.mark.parametrize("task", ["segment", ""])
@@ -156,7 +156,7 @@ def test_masks_are_ignored_with_note(tmp_path, image, task):
     path = columns(tmp_path / "seg.onnx", metadata=facts, masks=32)
     output, *place = by_hand(path, image, 96, 128)
     detector = opened(path)
-    check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
+    check(detector.detect(image, LIMITS), slow_boxes(output[0].T, 3, LIMITS), image, *place)
     assert [str(note) for note in detector.notes] == ["only the boxes of 'seg.onnx' are used; its masks are ignored"]
 
 
@@ -165,7 +165,7 @@ def test_keypoints_are_ignored_with_note(tmp_path, image):
     path = columns(tmp_path / "pose.onnx", 1, metadata=facts, more=51)
     output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
-    assert len(detector.detect(image, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
+    assert len(detector.detect(image, LIMITS)) == len(slow_boxes(output[0].T, 1, LIMITS))
     assert "keypoints are ignored" in str(detector.notes[0])
 
 
@@ -199,14 +199,14 @@ def test_classes_without_names_are_numbered(tmp_path):
 def test_missing_gpu_is_noted(tmp_path):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     if "CUDAExecutionProvider" in onnxruntime.get_available_providers():
-        pytest.skip("there is a GPU")
+        pytest.skip("this machine has a GPU")
     assert [str(note) for note in opened(path, device="cuda:0").notes] == [
         "this installation of onnxruntime does not support 'cuda:0'; the network runs on the CPU"
     ]
 
 
 def test_missing_cuda_libraries_fall_back_to_cpu_with_note(tmp_path, monkeypatch):
-    """As onnxruntime-gpu behaves without CUDA: it lists the provider, and creates a session without it."""
+    """Without CUDA, onnxruntime-gpu lists the provider, but creates a session without it."""
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     monkeypatch.setattr(sessions, "has_cuda", lambda: True)
     monkeypatch.setattr(sessions, "load_session", lambda file, gpu: load_session(file))
@@ -286,7 +286,7 @@ def test_unknown_device_is_rejected(tmp_path, device):
 
 def test_excessive_sizes_are_rejected_or_ignored(tmp_path):
     path = columns(tmp_path / "any.onnx", size=None, metadata={**NAMES, "imgsz": "[1000000, 1000000]", "stride": "1e9"})
-    assert opened(path).names == ("ball", "box", "cat"), "what metadata say beyond reason counts as not said"
+    assert opened(path).names == ("ball", "box", "cat"), "impossible metadata are ignored"
     assert refused(path, size=(10**6, 64))[0] == "VISION109"
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from linkwright.vision.detectors.suppression import non_maximum_suppression
 
 
-def slowly(boxes, scores, classes, iou, most):
+def slow_suppression(boxes, scores, classes, iou, most):
     selected = []
     for index in sorted(range(len(scores)), key=lambda index: -scores[index]):
         left, top, right, bottom = boxes[index]
@@ -35,5 +35,5 @@ def test_suppression_matches_slow_reference(rows, iou, most):
     boxes = np.array([row[0] for row in rows], np.float32).reshape(-1, 4)
     scores = np.array([row[1] / 8 for row in rows], np.float32)
     classes = np.array([row[2] for row in rows], np.int32)
-    expected = slowly(boxes.tolist(), scores.tolist(), classes.tolist(), iou, most)
+    expected = slow_suppression(boxes.tolist(), scores.tolist(), classes.tolist(), iou, most)
     assert non_maximum_suppression(boxes, scores, classes, iou, most).tolist() == expected

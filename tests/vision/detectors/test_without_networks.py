@@ -101,7 +101,7 @@ def test_small_qr_code_is_read(turned):
     image = cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA)
     detections = detector("qr").detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
     assert names(detections) == ["kitchen"]
-    # Its quiet zone of six modules is not in the box.
+    # The box does not include the quiet zone of six modules.
     assert detections.boxes[0] == pytest.approx([118, 98, 182, 162], abs=4)
 
 
@@ -124,7 +124,7 @@ def test_partial_qr_codes_are_not_an_error():
 def test_line_on_floor_is_detected():
     image = blank()
     cv2.line(image, (200, 239), (200, 100), (20, 20, 20), 21)
-    image[:100] = 0  # above the part that is looked at
+    image[:100] = 0  # above the searched part of the image
     detections = detector("line").detect(image, LIMITS)
     assert names(detections) == ["line"]
     left, top, right, bottom = detections.boxes[0]

@@ -20,12 +20,12 @@ from linkwright.vision.detectors.registry import make_detector
 from linkwright.vision.evaluation import intersection_over_union
 from linkwright.vision.models.things import FILE
 
-pytest.importorskip("mujoco", reason="MuJoCo has no wheel here")
+pytest.importorskip("mujoco", reason="MuJoCo is not installed")
 
 WIDTH, HEIGHT = 640, 480
 FOCAL = WIDTH / (2 * tan(0.6))
 
-# Where a camera stands in the playground, and at what it looks: model, class.
+# The position of a camera in the playground, the model that it looks at, and the class of the model.
 LOOKS = [
     ((1.0, -1.6, 0.4), "red_ball", "ball"),
     ((0.3, 0.4, 0.5), "football", "ball"),

@@ -18,9 +18,9 @@ class ColorDetector:
     """A node that finds one object: all pixels of a color.
 
     Args:
-        graph: where it lives.
+        graph: the graph of the node.
         color: one of `COLORS`.
-        name: the class of what it finds.
+        name: the class of the object.
     """
 
     def __init__(self, graph: Graph, color: str = "red", name: str = "ball") -> None:

@@ -36,15 +36,15 @@ _IMAGE_PERIOD = 0.1
 
 
 class SeekingRobot(SteppedSimulation):
-    """mbot, and a ball.
+    """A simulation of mbot, a ball, and the nodes that find it.
 
     Args:
-        folder: for the model of the ball.
-        ball: where it lies, meters.
-        images: whether a camera sees it; else its boxes are worked out, which is much quicker.
-        laser: whether there is one.
-        seeker: parameters of the seeker.
-        object: the class that the ball is found as.
+        folder: the folder for the model of the ball.
+        ball: the position of the ball in meters.
+        images: whether a camera renders the ball; without images, its boxes are computed, which is much faster.
+        laser: whether mbot has a laser.
+        seeker: the parameters of the seeker.
+        object_name: the class of the ball in detections.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class SeekingRobot(SteppedSimulation):
             self._info = self.node.create_publisher(
                 get_message("sensor_msgs/msg/CameraInfo"), "/camera/camera_info", 10
             )
-            self._numbers = np.random.default_rng(3)
+            self._rng = np.random.default_rng(3)
         self.advance(0.5)
         return self
 
@@ -106,7 +106,7 @@ class SeekingRobot(SteppedSimulation):
         self.spawn(self._model, "ball", pose=(x, y, RADIUS, 0.0, 0.0, 0.0))
 
     def hide(self) -> None:
-        """Nobody sees the ball any more."""
+        """Stop the detections of the ball."""
         self._visible = False
 
     def tell(self, topic: str, text: str) -> None:
@@ -122,7 +122,7 @@ class SeekingRobot(SteppedSimulation):
         return [said_message.data for said_message in self.said_messages]
 
     def advance_until_said(self, word: str, seconds: float = 60.0) -> bool:
-        """Advance the time until the robot says a text with a word."""
+        """Advance the time until the robot says a text that contains a word."""
         for _ in range(round(seconds / 0.5)):
             self.advance(0.5)
             if any(word in text for text in self.spoken()):
@@ -130,13 +130,13 @@ class SeekingRobot(SteppedSimulation):
         return False
 
     def distance(self) -> float:
-        """Between the middles of the robot and of the ball, meters."""
+        """Return the distance between the centers of the robot and the ball in meters."""
         x, y, *_ = self.robot_pose()
         ball = self.simulation.model_pose("ball")
         return math.dist((x, y), ball[:2])
 
     def _detect(self) -> None:
-        """Return the box of the ball as from a detector, with an error of about a pixel."""
+        """Publish the box of the ball as a detector does, with an error of about a pixel."""
         header = get_message("std_msgs/msg/Header")(frame_id="camera_optical_frame")
         now_ns = self.simulation.time
         header.stamp = Time.from_nanoseconds(now_ns)
@@ -148,7 +148,7 @@ class SeekingRobot(SteppedSimulation):
         camera = make_camera_model(_WIDTH, _HEIGHT, info.k)
         if self._visible and x > RADIUS:
             corners = np.array([[-y - RADIUS, -z - RADIUS, x], [-y + RADIUS, -z + RADIUS, x]])
-            pixels = camera.pixels(corners).ravel() + self._numbers.normal(0, 0.7, 4)
+            pixels = camera.pixels(corners).ravel() + self._rng.normal(0, 0.7, 4)
             left, top, right, bottom = np.clip(pixels, 0, [_WIDTH, _HEIGHT] * 2)
             if right - left > 5 and bottom - top > 5:
                 array.detections.append(detection(header, left, top, right, bottom, self._object_name))

@@ -26,7 +26,7 @@ def start(test, kind=Detect3DNode, **parameters):
     recording = test.record("/detections_3d")
     markers = test.record("/markers")
     test.settle()
-    # A camera that looks forward, half a meter above the ground.
+    # The camera looks forward, half a meter above the ground.
     batch = TransformBatch(("base_link",), ("camera",), 0, np.array([[0.1, 0.0, 0.5, -0.5, 0.5, -0.5, 0.5]]))
     test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
     test.settle()
@@ -88,7 +88,7 @@ def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, div
     assert detection.results[0].hypothesis.class_id == "ball"
     assert detection.results[0].pose.pose.position.x == at.x
     turn = detection.bbox.center.orientation
-    assert abs(turn.w) == pytest.approx(1.0), "x of the box is along the view, z is up"
+    assert abs(turn.w) == pytest.approx(1.0), "the box's x axis is along the view, and its z axis is up"
     _, box, label = markers.last.markers
     assert (box.type, box.scale.y) == (box.CUBE, size.y)
     assert (label.type, label.text) == (label.TEXT_VIEW_FACING, "ball 7 2.0 m")
@@ -108,7 +108,7 @@ def test_objects_are_placed_on_ground_without_depth(test):
     camera(test, "/camera_info")
     boxes(test, (295.0, 320.0, 345.0, 365.0), (300.0, 100.0, 340.0, 140.0))
     (detection,) = recording.last.detections
-    assert detection.id == "7", "the other one is above the horizon"
+    assert detection.id == "7", "the other object is above the horizon"
     assert detection.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
     assert detection.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
     assert warnings(test) == []
@@ -173,6 +173,6 @@ def test_yolo_ros_messages_and_parameters_are_supported(test):
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
     assert recording.last.header.frame_id == detection.bbox3d.frame_id == "base_link"
     assert (detection.id, detection.class_name, detection.bbox.center.position.x) == ("7", "ball", 320.0)
-    assert array.detections[0].bbox3d.frame_id == "", "what others hear, too, stays as it is"
+    assert array.detections[0].bbox3d.frame_id == "", "the received message must not be changed"
     _, box, label = markers.last.markers
     assert (box.scale.y, label.text) == (size.y, "ball 7 2.0 m")

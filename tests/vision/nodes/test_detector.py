@@ -78,10 +78,10 @@ async def detections_of(test, recording, topic, message):
     test.publish(topic, message)
     await test.settle()
 
-    def came():
+    def has_new_message():
         return len(recording) > before
 
-    await eventually(came)
+    await eventually(has_new_message)
     return recording.last
 
 
@@ -290,7 +290,7 @@ async def test_unloadable_detector_ends_node_with_one_error_and_hint(test, start
     running = await start(**parameters)
     assert running.finished.result() == 1
     logged = [record.text for record in test.log if record.level is LogLevel.FATAL]
-    assert len(logged) == 2, "the error, and the hint"
+    assert len(logged) == 2, "the log has the error and the hint"
     assert words in logged[0]
 
 
@@ -445,7 +445,7 @@ async def test_closing_node_waits_silently_for_loading_detector(test, start, mon
 
 
 class Odd(Detector):
-    """A user's own, which fails as it should not."""
+    """A user's detector, which raises an unexpected error."""
 
     @property
     def names(self):

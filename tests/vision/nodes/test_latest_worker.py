@@ -1,4 +1,4 @@
-"""The worker that looks at the latest only."""
+"""The worker that processes only the latest item."""
 
 from __future__ import annotations
 

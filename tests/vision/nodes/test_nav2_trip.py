@@ -53,7 +53,7 @@ def test_seeker_sends_nav2_to_object(tmp_path, reached, message):
         assert pose.header.frame_id == "odom"
         assert pose.pose.position.x == pytest.approx(2.0 - RADIUS - 0.5, abs=0.1)
         assert pose.pose.orientation.w == pytest.approx(1.0, abs=0.01)
-        assert test.commands.last.linear.x == 0.0, "nav2 drives"
+        assert test.commands.last.linear.x == 0.0, "nav2 drives the robot"
         navigator.end(reached)
         test.advance(0.5)
         assert test.spoken()[-1].startswith(message)

@@ -25,7 +25,7 @@ def test_seeker_goes_to_ball(tmp_path, ball):
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
         place = test.robot_pose()
         test.advance(2.0)
-        assert test.robot_pose()[:2] == pytest.approx(place[:2], abs=0.02), "it stands still"
+        assert test.robot_pose()[:2] == pytest.approx(place[:2], abs=0.02), "the robot stands still"
         answers = {name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")}
         assert answers[""] == answers["/en"]
         assert answers["/en"].startswith("I see a ball 0.")
@@ -79,7 +79,7 @@ def test_seeker_follows_moving_ball_until_stopped(tmp_path):
         test.delete("ball")
         test.put_ball(3.5, 0.3)
         test.advance(2.0)
-        assert len(test.commands) == commands, "nothing is commanded any more"
+        assert len(test.commands) == commands, "no more commands are published"
         assert test.commands.last.linear.x == 0.0
 
 

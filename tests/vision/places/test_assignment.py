@@ -10,7 +10,7 @@ import pytest
 from linkwright.vision.places.assignment import assign
 
 
-def least(costs, most):
+def lowest_cost(costs, most):
     """Return the cost of the best assignment by exhaustive search; an unassigned element costs `most`."""
     rows, columns = costs.shape
     padded = np.full((rows, columns + rows), most)
@@ -27,7 +27,7 @@ def test_assignment_has_minimum_cost(seed):
     assert len({row for row, _ in pairs}) == len({column for _, column in pairs}) == len(pairs)
     assert all(costs[pair] <= 0.8 for pair in pairs)
     alone = len(costs) - len(pairs)
-    assert sum(costs[pair] for pair in pairs) + 0.8 * alone == pytest.approx(least(costs, 0.8))
+    assert sum(costs[pair] for pair in pairs) + 0.8 * alone == pytest.approx(lowest_cost(costs, 0.8))
 
 
 def test_empty_or_impossible_assignment_is_empty():

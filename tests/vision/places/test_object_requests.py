@@ -1,4 +1,4 @@
-"""Objects in words, in English and Chinese."""
+"""Requests for objects, and sentences about them, in English and Chinese."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_request_without_object_is_none(text):
 
 
 @pytest.mark.parametrize(
-    ("asked", "name", "color", "is_it"),
+    ("request_text", "name", "color", "is_match"),
     [
         ("ball", "ball", "red", True),
         ("ball", "sports ball", None, True),
@@ -72,14 +72,14 @@ def test_request_without_object_is_none(text):
         ("stop sign", "stop_sign", "red", True),
     ],
 )
-def test_request_matches_detection(asked, name, color, is_it):
-    assert parse_request(asked).matches(name, color) is is_it
+def test_request_matches_detection(request_text, name, color, is_match):
+    assert parse_request(request_text).matches(name, color) is is_match
 
 
 def test_color_patch_matches_ball_if_aspect_ratio_is_square():
     assert parse_request("red ball").matches("red", None, 1.1)
     assert not parse_request("red ball").matches("red", None, 0.4)
-    assert parse_request("red ball").matches("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
+    assert parse_request("red ball").matches("ball", "red", 0.4), "the class of a partly visible object counts"
     assert parse_request("red").matches("red", None, 0.4)
 
 
@@ -119,7 +119,7 @@ def test_sightings_are_described_in_sentence():
     assert describe_sightings([], "zh") == "我什么也没看到。"
     assert describe_sightings([Sighting("person", None, -1.0, 0.0)], "en") == "I see a person 1.0 m behind me."
     balls = [Sighting("red", None, 1.0, 0.0), Sighting("red", "red", 2.0, 0.0)]
-    assert describe_sightings(balls, "en") == "I see two red things.", "things of one name are counted together"
+    assert describe_sightings(balls, "en") == "I see two red things.", "objects with the same name are counted together"
     people = [Sighting("person", None, 1.0, 0.0)] * 12
     assert describe_sightings(people, "en") == "I see 12 people."
 

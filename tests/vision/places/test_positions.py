@@ -62,7 +62,7 @@ def test_nearest_surface_determines_position():
     depths[200:280, 310:330] = 1.0
     place = position_from_depth(np.array([290.0, 200.0, 350.0, 280.0]), depths, CAMERA)
     assert place.center[2] == pytest.approx(1.0, abs=0.01)
-    assert place.depth < 0.01, "what is flat is not as deep as wide"
+    assert place.depth < 0.01, "a flat object has no depth"
 
 
 def test_few_near_depths_are_ignored_as_noise():
@@ -88,7 +88,7 @@ def test_position_of_drum_on_ground_is_found(x, z):
     place = position_on_ground(box, CAMERA, UP, 0.5)
     assert (place.center[0], place.center[2]) == pytest.approx((x, z), abs=0.06)
     assert place.width == pytest.approx(0.3, abs=0.05)
-    assert place.center[1] == pytest.approx(0.2, abs=0.06), "in the middle of its height"
+    assert place.center[1] == pytest.approx(0.2, abs=0.06), "the center is at half the height"
 
 
 def test_position_of_ball_on_ground_is_found():

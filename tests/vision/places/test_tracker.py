@@ -31,20 +31,20 @@ def test_moving_object_keeps_id_from_second_detection():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_crossing_objects_keep_ids(seed):
-    numbers = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed)
     tracker = Tracker()
-    met = {"right": set(), "left": set()}
+    ids_by_object = {"right": set(), "left": set()}
     for step in range(120):
-        noise = numbers.normal(0, 1, 4)
+        noise = rng.normal(0, 1, 4)
         right = (100 + 3 * step + noise[0], 200 + noise[1], 40)
         left = (460 - 3 * step + noise[2], 212 + noise[3], 40)
-        hidden = abs(right[0] - left[0]) < 20  # the nearer one covers the other
-        ids = tracker.update(detections_of(right) if hidden else detections_of(right, left), step * PERIOD)
-        if step > 2 and not hidden:
-            met["right"].add(ids[0])
-            met["left"].add(ids[1])
-    assert met == {"right": {min(met["right"])}, "left": {min(met["left"])}}
-    assert met["right"] != met["left"]
+        is_occluded = abs(right[0] - left[0]) < 20  # the nearer object covers the other
+        ids = tracker.update(detections_of(right) if is_occluded else detections_of(right, left), step * PERIOD)
+        if step > 2 and not is_occluded:
+            ids_by_object["right"].add(ids[0])
+            ids_by_object["left"].add(ids[1])
+    assert ids_by_object == {"right": {min(ids_by_object["right"])}, "left": {min(ids_by_object["left"])}}
+    assert ids_by_object["right"] != ids_by_object["left"]
 
 
 def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
@@ -54,7 +54,7 @@ def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
         gone = 30 <= step < 50 or 90 <= step < 150
         result = tracker.update(detections_of() if gone else detections_of((100 + step, 200, 40)), step * PERIOD)
         ids += result
-    assert [key for key in dict.fromkeys(ids) if key] == [1, 2], "ids are never used again"
+    assert [key for key in dict.fromkeys(ids) if key] == [1, 2], "IDs are not reused"
     assert ids[28:32] == [1, 1, 1, 1]
 
 
@@ -91,12 +91,12 @@ def test_low_frame_rate_keeps_ids():
 
 
 def test_thirty_crossing_objects_keep_ids():
-    numbers = np.random.default_rng(7)
-    start, speed = numbers.uniform(0, 2000, (30, 2)), numbers.uniform(-60, 60, (30, 2))
+    rng = np.random.default_rng(7)
+    start, speed = rng.uniform(0, 2000, (30, 2)), rng.uniform(-60, 60, (30, 2))
     tracker, switches, before = Tracker(), 0, None
     for step in range(90):
-        places = start + speed * step * PERIOD + numbers.normal(0, 0.5, (30, 2))
-        ids = np.array(tracker.update(detections_of(*[(x, y, 40) for x, y in places]), step * PERIOD))
+        positions = start + speed * step * PERIOD + rng.normal(0, 0.5, (30, 2))
+        ids = np.array(tracker.update(detections_of(*[(x, y, 40) for x, y in positions]), step * PERIOD))
         if before is not None and step > 2:
             switches += int((ids != before).sum())
         before = ids

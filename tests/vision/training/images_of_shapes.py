@@ -11,7 +11,7 @@ NAMES = ("disc", "square")
 
 
 def write_shapes(folder: Path, count: int, *, names: tuple[str, ...] = NAMES, size: int = 96, seed: int = 1) -> Path:
-    """Write `count` images, which are those of both parts, with their labels; returns the folder."""
+    """Write `count` images with labels, which both parts of the dataset use, and return the folder."""
     chance = np.random.default_rng(seed)
     (folder / "images" / "train").mkdir(parents=True)
     (folder / "labels" / "train").mkdir(parents=True)

@@ -54,7 +54,7 @@ def sum_of(world):
 
 
 def write_card(folder, *worlds, more=()):
-    """Write the notes of `linkwright dataset` about images of one run, or of more."""
+    """Write the notes that `linkwright dataset` writes about the images of one or more runs."""
     folder.mkdir(exist_ok=True)
     listed = [{"name": f"rooms/{world}.world", "file": f"{world}.world", "sha256": sum_of(world)} for world in worlds]
     runs = [{"seed": 3, "most": 10}, *more]

@@ -1,4 +1,4 @@
-"""`linkwright vision train` and `evaluate`, as far as they need no PyTorch."""
+"""`linkwright vision train` and `evaluate` without PyTorch."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.vision.training.images_of_shapes import write_shapes
 
 @pytest.fixture
 def colors(tmp_path):
-    """Red discs and blue squares, which the detector `colors` finds."""
+    """Return a dataset of red discs and blue squares, which the detector `colors` finds."""
     return write_shapes(tmp_path / "colors", 6, names=("red", "blue"))
 
 

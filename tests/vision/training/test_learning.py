@@ -19,7 +19,7 @@ from linkwright.vision.training.training_run import train_network
 from linkwright.vision.training.yolo_dataset import open_dataset
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
-# `make test-train` sets the variable: there it is an error when PyTorch is missing, which would else skip everything.
+# `make test-train` sets the variable, so that a missing PyTorch is an error there, instead of a skip.
 HERE = find_spec("torch") is not None or "LINKWRIGHT_TESTS_TRAINING" in os.environ
 pytestmark = pytest.mark.skipif(not HERE, reason="PyTorch is not installed; `make test-train` installs it")
 
@@ -129,7 +129,7 @@ def test_checkpoint_of_another_network_is_rejected(shapes, tmp_path):
 def test_exported_network_matches_trained_network():
     torch.manual_seed(2)
     network = Network(Shape(3, 4)).eval()
-    with torch.no_grad():  # the file's weights have 16 bits; with such ones here, too, only the export is compared
+    with torch.no_grad():  # round the weights to 16 bits, as in the file
         for parameter in network.parameters():
             parameter.copy_(parameter.half().float())
     image = torch.rand(1, 3, 96, 64)
@@ -139,7 +139,7 @@ def test_exported_network_matches_trained_network():
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
     output = session.run(None, {"images": image.numpy()})[0][0].T
     left, right = output[:, :2] - output[:, 2:4] / 2, output[:, :2] + output[:, 2:4] / 2
-    assert np.abs(np.concatenate((left, right), 1) - boxes[0].numpy()).max() < 0.05  # pixels
+    assert np.abs(np.concatenate((left, right), 1) - boxes[0].numpy()).max() < 0.05  # in pixels
     assert np.abs(output[:, 4:] - (logits[0] + np.log(4)).sigmoid().numpy()).max() < 1e-4
     metadata = session.get_modelmeta().custom_metadata_map
     assert metadata["names"] == "{0: 'a', 1: 'b', 2: 'c'}"
@@ -225,7 +225,7 @@ def test_training_starts_from_weights_file_and_card_names_it(shapes, tmp_path, c
     ]
     image = np.random.default_rng(0).random((1, 3, 96, 96), np.float32)
     first, second = (session.run(None, {"images": image})[0][0, :4] for session in sessions)
-    assert np.abs(first - second).max() < 1.0  # pixels
+    assert np.abs(first - second).max() < 1.0  # in pixels
     assert "| started from | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
 
 

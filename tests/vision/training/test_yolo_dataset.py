@@ -162,7 +162,7 @@ def test_augmentation_keeps_boxes_around_objects(shapes):
             if kind == 0 and min(right - left, bottom - top) > 8:
                 middle = image[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
                 seen += 1
-                assert middle[0] > middle[2]  # the disc is the red one
+                assert middle[0] > middle[2]  # discs are red
     assert seen > 10
 
 
@@ -183,7 +183,7 @@ def test_last_epochs_use_whole_images(shapes):
     here = labeled_images.objects[0]
     sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
     assert (objects[:, 0] == here[:, 0]).all()
-    assert np.median(sides) == pytest.approx(1, abs=0.12)  # seen whole, and as large as they are
+    assert np.median(sides) == pytest.approx(1, abs=0.12)  # the objects are complete, and keep their sizes
 
 
 def test_images_of_rare_classes_are_sampled_more_often():
@@ -195,7 +195,7 @@ def test_images_of_rare_classes_are_sampled_more_often():
     times = repeat_factors(labeled_images, 4)
     assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
     assert times[24] == pytest.approx(np.sqrt(8))
-    assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing
+    assert times[25:] == pytest.approx(1)  # images with only ignored objects, or without objects
     chosen = [repeated_indices(times, np.random.default_rng(seed)) for seed in range(200)]
     counts = np.mean([np.bincount(indices, minlength=len(objects)) for indices in chosen], 0)
     assert counts[:24] == pytest.approx(1)

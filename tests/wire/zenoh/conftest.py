@@ -22,7 +22,7 @@ def wire() -> str:
 
 @pytest.fixture(autouse=True)
 def over_zenoh(zenoh_variables: None) -> None:
-    """Use Zenoh in programs, too, and in tests that start no process of their own."""
+    """Use Zenoh also in programs, and in tests that create no `Process`."""
 
 
 @pytest.fixture

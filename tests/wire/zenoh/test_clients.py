@@ -59,7 +59,7 @@ def test_client_discovers_only_what_its_endpoints_need(processes):
 
 
 def test_first_graph_query_is_answered_completely(processes, monkeypatch):
-    monkeypatch.setattr(transport, "_ANSWERED_WITHIN", 60.0)  # on a machine that is busy, too
+    monkeypatch.setattr(transport, "_ANSWERED_WITHIN", 60.0)  # enough for a busy machine
     monkeypatch.setattr(transport, "_QUIET", 1.0)
     talker, asks = processes("talker"), processes("asks")
     talker.node.create_publisher(String, "chatter", 10)
@@ -67,7 +67,7 @@ def test_first_graph_query_is_answered_completely(processes, monkeypatch):
     late = processes("late")
     late.node.create_publisher(String, "chatter", 10)
     late.node.create_publisher(String, "said_late", 10)
-    talker.spin_until(lambda: hears.get_publisher_count() == 1)  # so the router knows of all
+    talker.spin_until(lambda: hears.get_publisher_count() == 1)  # the router then knows all endpoints
     assert asks.node.count_publishers("chatter") == 2
     assert sorted(asks.node.get_node_names()) == ["asks", "late", "talker"]
     late.close()
@@ -90,7 +90,7 @@ def test_recreated_subscription_counts_publishers_correctly(processes):
 
 
 def test_outdated_liveliness_news_is_ignored_and_returned_token_kept(processes, monkeypatch):
-    """Zenoh delivers known tokens in a task of its own, possibly after the news of their removal."""
+    """Zenoh delivers known tokens in a separate task, possibly after the news of their removal."""
     talker, ear = processes("talker"), processes("ear")
     publisher = talker.node.create_publisher(String, "chatter", 10)
     subscription = ear.node.create_subscription(String, "chatter", print, 10)
@@ -155,7 +155,7 @@ def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its
 
 
 def test_ended_sessions_are_no_longer_watched(processes):
-    """A robot that runs for months sees many sessions come and go."""
+    """Many sessions join and leave during the months that a robot runs."""
     ours = processes("ours")
     subscription = ours.node.create_subscription(Int32, "flood", print, 10)
     subscription.watch_lost(print)

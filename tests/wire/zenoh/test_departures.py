@@ -1,4 +1,4 @@
-"""The way in which publishers of other sessions left, judged by the order of events, some of which may be missing."""
+"""How publishers of other sessions left, judged by the order of events, some of which may be missing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The data about other sessions: none remains of sessions that are gone."""
+"""The data about other sessions; data about ended sessions is removed."""
 
 from __future__ import annotations
 

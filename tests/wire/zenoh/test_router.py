@@ -1,4 +1,4 @@
-"""Routers: ours serves nodes that look for one where rmw_zenoh_cpp does."""
+"""Our router serves nodes that search for a router where rmw_zenoh_cpp does."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_processes_discover_by_router_and_continue_without_it(processes, start_r
 
 
 def test_graph_is_restored_after_router_restart(processes, start_router, monkeypatch, router_port):
-    """Clients have no link except to their router: they lose the graph with it, and then regain it."""
+    """Clients are connected only to their router, so they lose the graph with it, and regain it later."""
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
     router = start_router()
     a, b = processes("a"), processes("b")

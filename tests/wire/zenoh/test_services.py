@@ -18,7 +18,7 @@ AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
 SetBool = get_service("std_srvs/srv/SetBool")
 CALLS = 1000
 AT_ONCE = 3
-"""Of each client; together fewer than the queue of a service holds."""
+"""The simultaneous requests of each client; their total is below the queue size of a service."""
 
 
 def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
@@ -77,7 +77,7 @@ def test_failed_request_is_reported_once(processes):
     (text,) = a.warnings()
     assert "A request to service '/flip' was not answered" in text
     assert not future.done()
-    a.spin_until(lambda: not client.service_is_ready())  # the news that it has gone comes by another way
+    a.spin_until(lambda: not client.service_is_ready())  # Zenoh reports the departure separately
 
 
 class LateQuery:
@@ -103,7 +103,7 @@ class DeclaredSession:
 
 
 def test_request_in_transit_ends_when_service_closes(processes):
-    """Undeclaring does not wait for such a request: its client waited for ten minutes."""
+    """Undeclaring a service does not wait for such a request, and its client waited for ten minutes."""
     node = processes("ours", join_now=False).node
     service = node.create_service(SetBool, "flip", flip)
     names = (EndpointKind.SERVICE, "/flip", "std_srvs::srv::dds_::SetBool_", "RIHS01_00")

@@ -62,7 +62,7 @@ def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port)
     assert "DDS112" in process.warnings()[-1]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="processes are not interrupted so on Windows")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
 @pytest.mark.parametrize("words", [("topic", "list"), ("node", "list"), ("doctor",), ("bridge", "zenoh", "zenoh:7")])
 def test_ctrl_c_ends_wait_for_router(monkeypatch, silent_port, words):
     monkeypatch.setenv(OVERRIDES, client_of(silent_port))
@@ -98,7 +98,7 @@ def test_malformed_and_unknown_addresses_are_reported():
     assert "is not an address: write it as tcp/HOST:PORT" in obstacle("tcp/localhost", {})
     assert "its port must be at most 65535" in obstacle("tcp/127.0.0.1:70000", {})
     assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in obstacle("tcp/robot.invalid:7447", {})
-    assert not obstacle("udp/127.0.0.1:9", {}), "Zenoh's alone"
+    assert not obstacle("udp/127.0.0.1:9", {}), "only Zenoh checks UDP addresses"
 
 
 def test_duplicate_session_id_is_reported(silent_port):

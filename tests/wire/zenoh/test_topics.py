@@ -50,13 +50,13 @@ def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
 
 
 def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
-    """The thread that holds Python's lock does not wait for a Zenoh callback that needs it: that took 10 s."""
+    """A thread with Python's lock must not wait for a Zenoh callback that needs the lock, which took 10 s."""
     node = processes("ours", join_now=False).node
     result = threading.Event()
 
     def changed() -> None:
         result.set()
-        time.sleep(0.3)  # and then needs the lock
+        time.sleep(0.3)  # the callback then needs the lock
 
     with open_with(configuration(read_settings())) as ours, open_with(configuration(read_settings())) as theirs:
 
@@ -173,11 +173,11 @@ def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     process.spin_until(lambda: "marker" in process.node.get_node_names())
     process.spin_until(lambda: process.node.count_publishers("/rosout") == 2)
     marker.kill()
-    process.spin_until(lambda: lost)  # after those that left, if these were told, too
+    process.spin_until(lambda: lost)  # reports about publishers that left would have come first
     assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
     again = programs("our_program", "marker")
     process.spin_until(lambda: process.node.get_node_names().count("marker") == 1)
-    again.ask_until(lambda nodes: nodes == ["marker", "ours"], "nodes")  # who is heard need not have heard
+    again.ask_until(lambda nodes: nodes == ["marker", "ours"], "nodes")  # the discovery must work in both directions
 
 
 LAUNCH_FILE = """

@@ -202,7 +202,8 @@ async def test_robot_state_highlights_links():
         assert world.status("RobotState")["Highlights"] == ("warn", "The robot has no link 'foot'")
         display = world.display("RobotState")
         display.set_property(("Show Highlights",), False)
-        assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]  # RViz's red of no color
+        # RViz draws links without a color in red.
+        assert shown_markers(display)["Robot State/hand"]["color"] == [1, 0, 0, 1]
         display.set_property(("Visual Enabled",), False)
         assert list(shown_markers(display)) == ["Robot State holds/cup"]
         assert await publish_and_settle(DisplayRobotState(hide=True)) == {}

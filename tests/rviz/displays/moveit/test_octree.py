@@ -27,7 +27,7 @@ def read(data: bytes, *, binary: bool = True, kind: str = "OcTree", resolution: 
 
 
 def test_smallest_cells_have_resolution_and_are_next_to_origin():
-    # Child 7 of the root, then child 0 of all below: the corner of the first octant that is nearest to the origin.
+    # Child 7 of the root, then child 0 at each level: the corner of the first octant that is nearest to the origin.
     data = node(c7=INNER) + node(c0=INNER) * 14 + node(c0=OCCUPIED, c1=FREE)
     cells = read(data)
     assert cells.sizes.tolist() == [0.5, 0.5]

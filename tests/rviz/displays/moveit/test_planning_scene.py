@@ -34,19 +34,19 @@ FAST = ", Scene Geometry: {Scene Display Time: 0.0001}"
 REMOVE, APPEND, MOVE = b"\x01", b"\x02", b"\x03"
 
 
-class Talker:
-    """move_group, as far as it publishes."""
+class SceneSource:
+    """The publisher of move_group's planning scene."""
 
     def __init__(self, world, topic: str = TOPIC) -> None:
-        self.w = world
+        self.world = world
         self.node = world.graph.create_node("move_group")
         self.publisher = self.node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
 
     async def publish_scene(self, message) -> dict[str, dict]:
         """Publish a scene, and return the drawing."""
         self.publisher.publish(message)
-        await self.w.settle()
-        display = self.w.viewer.displays[0]
+        await self.world.settle()
+        display = self.world.viewer.displays[0]
         await eventually(lambda: display._draw_timer is None)
         return shown_markers(display)
 
@@ -56,9 +56,9 @@ async def planning_scene_world(extra: str = FAST, cls: str = "PlanningScene", te
     async with open_world(config(cls, extra)) as world:
         if text:
             world.describe(text)
-        talker = Talker(world)
+        source = SceneSource(world)
         await world.settle()
-        yield world, talker
+        yield world, source
 
 
 async def test_planning_scene_properties_match_rviz():
@@ -89,8 +89,8 @@ async def test_planning_scene_properties_match_rviz():
 
 
 async def test_robot_state_of_scene_overrides_tf():
-    async with planning_scene_world() as (_, talker):
-        shown = await talker.publish_scene(scene(robot=state(shoulder=math.pi / 2, wrist=0.5)))
+    async with planning_scene_world() as (_, source):
+        shown = await source.publish_scene(scene(robot=state(shoulder=math.pi / 2, wrist=0.5)))
         hand = shown["Scene Robot/hand"]
         assert hand["frame"] == "base"
         np.testing.assert_allclose(hand["pose"][:3], [1.5, 0, 0], atol=1e-9)
@@ -99,7 +99,7 @@ async def test_robot_state_of_scene_overrides_tf():
 
 
 async def test_primitives_planes_and_meshes_are_drawn():
-    async with planning_scene_world() as (world, talker):
+    async with planning_scene_world() as (world, source):
         many = collision_object(
             "many",
             primitive(SolidPrimitive.BOX, 1, 2, 3),
@@ -116,7 +116,7 @@ async def test_primitives_planes_and_meshes_are_drawn():
         mesh.triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 2])]
         many.meshes = [mesh]
         many.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 2.0, -2.0])]
-        shown = await talker.publish_scene(scene(many))
+        shown = await source.publish_scene(scene(many))
         kinds = {name: marker["shape"] for name, marker in shown.items()}
         assert kinds == {
             "Scene Geometry/many": "cube",
@@ -138,59 +138,59 @@ async def test_primitives_planes_and_meshes_are_drawn():
 
 
 async def test_objects_are_added_moved_appended_and_removed():
-    async with planning_scene_world() as (world, talker):
-        assert list(await talker.publish_scene(scene(collision_object("a"), collision_object("b")))) == [
+    async with planning_scene_world() as (world, source):
+        assert list(await source.publish_scene(scene(collision_object("a"), collision_object("b")))) == [
             "Scene Geometry/a",
             "Scene Geometry/b",
         ]
-        moved = await talker.publish_scene(scene(collision_object("a", at=pose(z=2.0), operation=MOVE), diff=True))
+        moved = await source.publish_scene(scene(collision_object("a", at=pose(z=2.0), operation=MOVE), diff=True))
         assert moved["Scene Geometry/a"]["pose"][:3] == [0, 0, 2]
-        grown = await talker.publish_scene(scene(collision_object("b", primitive(2, 1), operation=APPEND), diff=True))
+        grown = await source.publish_scene(scene(collision_object("b", primitive(2, 1), operation=APPEND), diff=True))
         assert "Scene Geometry/b primitive 1" in grown
-        left = await talker.publish_scene(scene(collision_object("b", operation=REMOVE), diff=True))
+        left = await source.publish_scene(scene(collision_object("b", operation=REMOVE), diff=True))
         assert list(left) == ["Scene Geometry/a"]
-        await talker.publish_scene(scene(collision_object("nobody", operation=MOVE), diff=True))
-        assert world.status("PlanningScene")["nobody"] == (
+        await source.publish_scene(scene(collision_object("missing", operation=MOVE), diff=True))
+        assert world.status("PlanningScene")["missing"] == (
             "error",
-            "Object 'nobody' cannot be moved, because it does not exist",
+            "Object 'missing' cannot be moved, because it does not exist",
         )
-        assert await talker.publish_scene(scene(collision_object("", operation=REMOVE), diff=True)) == {}
-        assert list(await talker.publish_scene(scene(collision_object("c")))) == ["Scene Geometry/c"]
-        assert "nobody" not in world.status("PlanningScene")
+        assert await source.publish_scene(scene(collision_object("", operation=REMOVE), diff=True)) == {}
+        assert list(await source.publish_scene(scene(collision_object("c")))) == ["Scene Geometry/c"]
+        assert "missing" not in world.status("PlanningScene")
 
 
 async def test_attached_object_moves_with_its_link():
-    async with planning_scene_world() as (_, talker):
+    async with planning_scene_world() as (_, source):
         robot = state(shoulder=0.0, wrist=0.0)
         robot.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand", at=pose(x=0.1)))]
-        shown = await talker.publish_scene(scene(collision_object("cup"), robot=robot))
+        shown = await source.publish_scene(scene(collision_object("cup"), robot=robot))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 1])
         assert shown["Scene Robot holds/cup"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 1])
         assert "Scene Geometry/cup" not in shown
-        shown = await talker.publish_scene(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
+        shown = await source.publish_scene(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 2])
-        let_go = state()
-        let_go.attached_collision_objects = [attached("hand", collision_object("cup", operation=REMOVE))]
-        assert "Scene Robot holds/cup" not in await talker.publish_scene(scene(robot=let_go, diff=True))
+        released = state()
+        released.attached_collision_objects = [attached("hand", collision_object("cup", operation=REMOVE))]
+        assert "Scene Robot holds/cup" not in await source.publish_scene(scene(robot=released, diff=True))
 
 
 async def test_objects_have_colors_of_scene():
-    async with planning_scene_world() as (_, talker):
+    async with planning_scene_world() as (_, source):
         color = ObjectColor(id="a")
         color.color.b, color.color.a = 1.0, 0.25
-        shown = await talker.publish_scene(scene(collision_object("a"), collision_object("b"), object_colors=[color]))
+        shown = await source.publish_scene(scene(collision_object("a"), collision_object("b"), object_colors=[color]))
         assert shown["Scene Geometry/a"]["color"] == [0, 0, 1, 0.25]
         assert shown["Scene Geometry/b"]["color"][3] == 0.9
 
 
 async def test_octomap_cells_follow_render_properties():
-    async with planning_scene_world() as (world, talker):
+    async with planning_scene_world() as (world, source):
         message = scene()
         octomap = message.world.octomap
         octomap.header.frame_id, octomap.origin = "base", pose(z=1.0)
         octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
         octomap.octomap.data = signed(struct.pack("<H", 0b10_01_00_00_00_00_00_00))
-        shown = await talker.publish_scene(message)
+        shown = await source.publish_scene(message)
         (name,) = shown
         assert (shown[name]["shape"], len(shown[name]["points"]) // 3) == ("cube_list", 1)
         assert shown[name]["pose"][:3] == [0, 0, 1]
@@ -201,7 +201,7 @@ async def test_octomap_cells_follow_render_properties():
         display.set_property(("Scene Geometry", "Show Scene Geometry"), False)
         assert shown_markers(display) == {}
         octomap.octomap.data = [1]
-        await talker.publish_scene(message)
+        await source.publish_scene(message)
         assert world.status("PlanningScene")["<octomap>"] == (
             "error",
             "The data of the octomap ends too early, after 1 bytes",
@@ -209,8 +209,8 @@ async def test_octomap_cells_follow_render_properties():
 
 
 async def test_changed_properties_take_effect_at_once():
-    async with planning_scene_world() as (world, talker):
-        await talker.publish_scene(scene(collision_object("a"), robot=state(shoulder=0.0)))
+    async with planning_scene_world() as (world, source):
+        await source.publish_scene(scene(collision_object("a"), robot=state(shoulder=0.0)))
         display = world.display("PlanningScene")
         display.set_property(("Scene Geometry", "Scene Color"), "#ff0000")
         display.set_property(("Scene Robot", "Robot Alpha"), 0.5)
@@ -234,12 +234,12 @@ async def test_full_scene_is_requested_when_move_group_appears():
         node = world.graph.create_node("move_group")
         requests = []
 
-        def give(request, response):
+        def respond(request, response):
             requests.append(request.components.components)
             response.scene = scene(collision_object("shelf"), robot=state(shoulder=1.0), name="kitchen")
             return response
 
-        node.create_service(get_service("moveit_msgs/srv/GetPlanningScene"), "/get_planning_scene", give)
+        node.create_service(get_service("moveit_msgs/srv/GetPlanningScene"), "/get_planning_scene", respond)
         display = world.display("PlanningScene")
         await eventually(lambda: "Scene Geometry/shelf" in shown_markers(display))
         assert "Scene Robot/hand" in shown_markers(display)
@@ -267,7 +267,7 @@ async def test_move_group_namespace_selects_service_and_description():
 
 
 async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
-    async with planning_scene_world() as (world, talker):
+    async with planning_scene_world() as (world, source):
         nan = collision_object("nan", at=pose(x=math.nan))
         short = collision_object("short", primitive(SolidPrimitive.BOX, 1, 1))
         kind = collision_object("kind", primitive(9, 1, 1, 1))
@@ -284,7 +284,7 @@ async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
             attached("hand", collision_object("e")),
         ]
         robot.attached_collision_objects[1].object.primitives = []
-        shown = await talker.publish_scene(
+        shown = await source.publish_scene(
             scene(nan, short, kind, poses, mesh, plane, collision_object("good"), robot=robot)
         )
         assert [name for name in shown if name.startswith("Scene Geometry")] == ["Scene Geometry/good"]
@@ -301,21 +301,21 @@ async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
         assert status["e"] == ("error", "The attached object 'e' has no shapes")
         assert status["Joints"] == ("warn", "The robot has no joint 'elbow'")
-        await talker.publish_scene(scene(collision_object("good", frame="nowhere"), robot=state(shoulder=math.inf)))
+        await source.publish_scene(scene(collision_object("good", frame="nowhere"), robot=state(shoulder=math.inf)))
         status = world.status("PlanningScene")
         assert status["State"] == ("error", "The position of joint 'shoulder' must be finite, but is inf")
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
         uneven = state(shoulder=0.0)
         uneven.joint_state.position = []
-        await talker.publish_scene(scene(robot=uneven))
+        await source.publish_scene(scene(robot=uneven))
         assert world.status("PlanningScene")["State"] == ("error", "The state has 1 joints, but 0 positions")
-        await talker.publish_scene(scene(collision_object("good"), robot=state(shoulder=0.5)))
+        await source.publish_scene(scene(collision_object("good"), robot=state(shoulder=0.5)))
         assert set(world.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
 
 
 async def test_objects_are_drawn_before_robot_description_arrives():
-    async with planning_scene_world(text="") as (world, talker):
-        shown = await talker.publish_scene(scene(collision_object("a"), robot=state(shoulder=1.0)))
+    async with planning_scene_world(text="") as (world, source):
+        shown = await source.publish_scene(scene(collision_object("a"), robot=state(shoulder=1.0)))
         assert list(shown) == ["Scene Geometry/a"]
         assert world.status("PlanningScene")["URDF"] == (
             "warn",
@@ -330,7 +330,7 @@ async def test_objects_are_drawn_before_robot_description_arrives():
 
 
 async def test_virtual_joint_places_root_link():
-    async with planning_scene_world() as (world, talker):
+    async with planning_scene_world() as (world, source):
         world.move({("map", "base"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         robot = state(shoulder=0.0)
         robot.multi_dof_joint_state.header.frame_id = "map"
@@ -338,16 +338,16 @@ async def test_virtual_joint_places_root_link():
         transform = get_message("geometry_msgs/msg/Transform")()
         transform.translation.y = 3.0
         robot.multi_dof_joint_state.transforms = [transform]
-        shown = await talker.publish_scene(scene(robot=robot))
+        shown = await source.publish_scene(scene(robot=robot))
         assert (shown["Scene Robot/base"]["frame"], shown["Scene Robot/base"]["pose"][:3]) == ("map", [0, 3, 0])
 
 
 async def test_page_receives_only_changed_objects():
-    async with planning_scene_world() as (world, talker):
-        await talker.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
+    async with planning_scene_world() as (world, source):
+        await source.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
         (store,) = world.display("PlanningScene").data()
         _, seen = store.since(0)
-        await talker.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
+        await source.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
         assert store.since(seen)[0] is None
 
 
