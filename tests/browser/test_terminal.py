@@ -148,7 +148,7 @@ def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
     run(page, "echo ready-$((1+1)); cat -v")
-    wait_for_line(page, "\nready-2")  # keys that the shell still reads have other line ends
+    wait_for_text(page, "\nready-2")  # keys that the shell still reads have other line ends
     page.keyboard.press("Control+s")
     page.keyboard.press("Control+q")
     page.keyboard.press("Tab")
