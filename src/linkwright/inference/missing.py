@@ -30,7 +30,7 @@ HOLLOW_DENSITY = 300.0
 The robots that tutorials use have 200 to 700 kg/m3.
 """
 
-_MIN_MASS = 0.01
+_MIN_MASS_KG = 0.01
 _MAX_MASS = 1000.0
 """The minimum and maximum of an inferred mass, in kg."""
 
@@ -165,7 +165,7 @@ def _missing_body_mass(members: list[Link], densities: Mapping[str, float], mesh
         if properties is None or link.element is None:
             continue
         has_mass_source = True
-        limited_mass = min(max(properties.mass, _MIN_MASS), _MAX_MASS)
+        limited_mass = min(max(properties.mass, _MIN_MASS_KG), _MAX_MASS)
         limited = properties.with_mass(limited_mass)
         message = phrase(
             "link '{link}' has no mass: it gets {mass:.3g} kg, the mass of its shapes at {density} kg/m3",

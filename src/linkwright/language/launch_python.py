@@ -54,7 +54,7 @@ CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals", 
 _ACTIONS = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer", "IncludeLaunchDescription")
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _REMAPPINGS, _PARAMETERS = re.compile(r"(?i)remap"), re.compile(r"(?i)^parameters$|_params$|_parameters$")
-_PAIR, _DEEPEST_LIST = 2, 4
+_PAIR, _MAX_LIST_DEPTH = 2, 4
 _URI = "package://"
 _WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
 
@@ -264,7 +264,7 @@ class PythonLaunchText:
 def _is_in_list_named(item: Item, name_pattern: re.Pattern[str]) -> bool:
     """Return whether an item is in a list for an argument or variable with a matching name."""
     current: Item | None = item
-    for _ in range(_DEEPEST_LIST):
+    for _ in range(_MAX_LIST_DEPTH):
         if current is None:
             return False
         words = [current.keyword] + [part.value for part in current.parts[:1] if isinstance(part, Name)]

@@ -100,7 +100,7 @@ _KINDS = {
     "executable": SymbolKind.FUNCTION,
     **dict.fromkeys(("node", "lifecycle_node", "composable_node", "node_container"), SymbolKind.NODE),
 }
-_DEEPEST = 50
+_MAX_DEPTH = 50
 """The maximum depth of symbols."""
 _NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
 
@@ -113,7 +113,7 @@ def _symbol(element: OutlineElement, depth: int) -> Symbol:
     attributes = _attribute_values(element.tag)
     identifier = next((attributes[name] for name in _NAMING if attributes.get(name)), "")
     kind = _KINDS.get(element.tag.name, SymbolKind.OBJECT)
-    children = tuple(_symbol(child, depth + 1) for child in element.children) if depth < _DEEPEST else ()
+    children = tuple(_symbol(child, depth + 1) for child in element.children) if depth < _MAX_DEPTH else ()
     name = f"{element.tag.name} {identifier}".strip()
     return Symbol(name, kind, element.tag.start, element.end, children, attributes.get("pkg", ""))
 

@@ -26,7 +26,7 @@ from linkwright.xmltree.tokens import Kind, tokens
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 _ARGUMENT = re.compile(r"arg\s+(\S+)\s*")
 _OPTIONAL = re.compile(r"\$\(optenv\s+\S+\s+([^()]*?)\s*\)")
-_DEEPEST = 12
+_MAX_DEPTH = 12
 _MAX_EXPRESSIONS = 8
 
 
@@ -126,7 +126,7 @@ class NameSources:
         yield from self._edits(source, value, new, 0)
 
     def _edits(self, source: SourceValue, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
-        if value == new or depth > _DEEPEST:
+        if value == new or depth > _MAX_DEPTH:
             return
         if source.is_literal:
             if source.text == value:
@@ -202,7 +202,7 @@ class NameSources:
 
     def _value(self, part: Token, frame: Frame | None, depth: int) -> str | None:
         """Return the value of a name in an expression if literal texts define it, or None."""
-        source = next(self._sources(part, frame), None) if depth <= _DEEPEST else None
+        source = next(self._sources(part, frame), None) if depth <= _MAX_DEPTH else None
         if source is None:
             return None
         values = [

@@ -24,7 +24,7 @@ _WRAPPERS = frozenset(
     }
 )
 """The functions whose value is the value of their first argument."""
-_DEEPEST = 30
+_MAX_DEPTH = 30
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class PythonPaths:
 
     def _value(self, parts: Sequence[Part], depth: int) -> Value | None:
         """Return the value of terms that are joined by ``+``, ``/`` or nothing."""
-        if depth > _DEEPEST or not parts:
+        if depth > _MAX_DEPTH or not parts:
             return None
         value: Value | None = None
         mark = ""

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from linkwright.bag import BagReader
     from linkwright.page.audience import Audience
 
-PATIENCE = 60.0
+IDLE_TIMEOUT_S = 60.0
 """Seconds without a page after which a recording is no longer shown."""
 
 _MAX_GUESTS = 4
-_CHECK_PERIOD = 5.0
-_MIN_IDLE_TIME = 10.0
+_CHECK_PERIOD_S = 5.0
+_MIN_IDLE_TIME_S = 10.0
 """Seconds without a page after which a recording may be replaced by another recording."""
 
 
@@ -122,7 +122,7 @@ class GuestRecordings:
         """If the limit is reached, close the recording that has had no pages for the longest time."""
         if len(self._guests) < _MAX_GUESTS:
             return
-        latest_time = asyncio.get_running_loop().time() - _MIN_IDLE_TIME
+        latest_time = asyncio.get_running_loop().time() - _MIN_IDLE_TIME_S
         last_page_times = {
             key: guest.last_page_time for key, guest in self._guests.items() if not len(guest.viewer.audience)
         }
@@ -132,7 +132,7 @@ class GuestRecordings:
 
     def _schedule_check(self) -> None:
         if self._check_timer is None:
-            self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._close_idle)
+            self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD_S, self._close_idle)
 
     def _close_idle(self) -> None:
         """Close the recordings whose last page was closed a while ago."""
@@ -141,7 +141,7 @@ class GuestRecordings:
         for key, guest in list(self._guests.items()):
             if len(guest.viewer.audience):
                 guest.last_page_time = loop.time()
-            elif loop.time() - guest.last_page_time > PATIENCE:
+            elif loop.time() - guest.last_page_time > IDLE_TIMEOUT_S:
                 del self._guests[key]
                 task = loop.create_task(_close_guest(guest))
                 self._closing_tasks.add(task)

@@ -14,7 +14,7 @@ from linkwright.graph import EndpointKind, Node
 from linkwright.messages import deserialize, get_service, serialize
 from linkwright.messages.schema_text import schema_of
 
-_PATIENCE = 10.0
+_CALL_TIMEOUT_S = 10.0
 """The timeout of a service call, in seconds."""
 
 
@@ -125,10 +125,10 @@ class Services:
         response_event = asyncio.Event()
         future.add_done_callback(lambda _: loop.call_soon_threadsafe(response_event.set))
         try:
-            await asyncio.wait_for(response_event.wait(), _PATIENCE)
+            await asyncio.wait_for(response_event.wait(), _CALL_TIMEOUT_S)
         except asyncio.TimeoutError:
             client.remove_pending_request(future)
-            raise CallFailedError(f"'{service.name}' did not respond within {_PATIENCE:g} s") from None
+            raise CallFailedError(f"'{service.name}' did not respond within {_CALL_TIMEOUT_S:g} s") from None
         try:
             response: Any = future.result()
             return bytes(serialize(response))

@@ -18,7 +18,7 @@ from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.errors.locations import with_location
-from linkwright.launch.errors.user_code import DEEPEST, endless_nesting_error, explain
+from linkwright.launch.errors.user_code import MAX_NESTING_DEPTH, endless_nesting_error, explain
 from linkwright.launch.log.loggers import launch_config
 from linkwright.launch.model import events
 from linkwright.launch.model.context import LaunchContext
@@ -301,7 +301,7 @@ class LaunchSession:
     # --- visits ---------------------------------------------------------------------------------------------
 
     def _visit(self, entity: LaunchDescriptionEntity, context: LaunchContext, depth: int = 1) -> None:
-        if depth > DEEPEST:
+        if depth > MAX_NESTING_DEPTH:
             raise endless_nesting_error(entity.source_location)
         try:
             next_entities = entity.visit(context)

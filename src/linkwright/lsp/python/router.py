@@ -32,7 +32,7 @@ from linkwright.lsp.python.workspace_stubs import WorkspaceStubs
 from linkwright.lsp.server import path_of
 
 _log = logging.getLogger(__name__)
-_PATIENCE_SECONDS = 5.0
+_RESPONSE_TIMEOUT_S = 5.0
 """The time in which other servers must respond after Linkwright's own server has responded."""
 _MAX_STARTS = 3
 _METHOD_NOT_FOUND = -32601
@@ -265,7 +265,7 @@ class Router:
         question.awaited.remove(name)
         question.answers[name] = message
         if name == OWN:
-            question.deadline = time.monotonic() + _PATIENCE_SECONDS
+            question.deadline = time.monotonic() + _RESPONSE_TIMEOUT_S
             if "error" not in message and is_enough(question.method, message.get("result")):
                 question.awaited.clear()
             if "error" in message and question.method == RENAME:  # no other server tries a refused rename

@@ -47,7 +47,7 @@ from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.settings import bad_value
 
-_WARNING_PERIOD = 5.0
+_WARNING_PERIOD_S = 5.0
 _MIN_CORNERS = 3
 _TF_TOPICS = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
@@ -177,7 +177,7 @@ class CostmapNode(ManagedNode):
         try:
             transform: Transform = self.transforms.lookup(self.global_frame, frame, time_ns)[0]
         except TransformException as error:
-            self.get_logger().warning(str(error), throttle_duration_sec=_WARNING_PERIOD)
+            self.get_logger().warning(str(error), throttle_duration_sec=_WARNING_PERIOD_S)
             return None
         x, y, yaw = pose
         transformed = compose(transform, (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw))))

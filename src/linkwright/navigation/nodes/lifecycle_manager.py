@@ -22,7 +22,7 @@ from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown
 
-_CHECK_PERIOD = 1.0
+_CHECK_PERIOD_S = 1.0
 
 
 class _Transition(Enum):
@@ -368,11 +368,11 @@ class LifecycleManager(SingleNode):
         """
         waited_seconds = 0.0
         while waited_seconds < self._max_respawn_seconds and self._is_still_down():
-            await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _CHECK_PERIOD)
-            waited_seconds += _CHECK_PERIOD
+            await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _CHECK_PERIOD_S)
+            waited_seconds += _CHECK_PERIOD_S
             async with self._command_lock:
                 if self._is_still_down() and all(
-                    [await managed.reports_unconfigured(_CHECK_PERIOD) for managed in self._managed_nodes]
+                    [await managed.reports_unconfigured(_CHECK_PERIOD_S) for managed in self._managed_nodes]
                 ):
                     self._logger.info("Successfully re-established connections from server respawns, starting back up.")
                     await self._startup()

@@ -23,16 +23,16 @@ from linkwright.navigation.slam.steps import Steps
 
 _TRAVEL_SHARE = 0.8
 """The share of the minimum travel distance after which a scan is processed, because odometry may be wrong."""
-_MIN_INLIERS = 0.25
-_MIN_LINK_INLIERS = 0.4
+_MIN_INLIER_FRACTION = 0.25
+_MIN_LINK_INLIER_FRACTION = 0.4
 """The minimum shares of points on known walls, for any match and for a match with an earlier pass."""
-_MAX_CONTRADICTION = 0.15
+_MAX_CONTRADICTING_FRACTION = 0.15
 _MAX_LINK_VARIANCE = 0.01
 """A link to an earlier pass closes the loop if the variance of its position is below this, in square meters."""
 _MAX_LOOP_CANDIDATES = 3
 _REDRAW_SHARE = 0.2
-"""A scan is redrawn if its points at `_FAR_POINT` moved by at least this share of a cell."""
-_FAR_POINT = 5.0
+"""A scan is redrawn if its points at `_FAR_POINT_DISTANCE_M` moved by at least this share of a cell."""
+_FAR_POINT_DISTANCE_M = 5.0
 _MIN_INFORMATION = 1e-3
 """Information added in all directions, so that the matrix can be inverted."""
 
@@ -205,7 +205,7 @@ class Mapper:
             pose, drawn_pose = self.graph.poses[number], self.occupancy.drawn_pose(number)
             if drawn_pose is not None:
                 change = relative_pose(drawn_pose, pose)
-                if np.hypot(change[0], change[1]) + _FAR_POINT * abs(change[2]) < tolerance:
+                if np.hypot(change[0], change[1]) + _FAR_POINT_DISTANCE_M * abs(change[2]) < tolerance:
                     continue
             self.occupancy.draw(number, scan, pose)
             yield
@@ -260,7 +260,7 @@ class Mapper:
         if best_match is None or best_match.response < self.settings.link_match_minimum_response_fine:
             return None
         offset = np.abs(best_match.pose - guess)[:2].max()
-        return best_match if best_match.inliers > _MIN_INLIERS and offset <= search.dimension else None
+        return best_match if best_match.inliers > _MIN_INLIER_FRACTION and offset <= search.dimension else None
 
     def _link(self, number: int) -> Steps[tuple[int, int]]:
         """Link a new node to nodes of earlier passes, and close loops.
@@ -331,11 +331,11 @@ class Mapper:
         guess = self.graph.poses[number] if around is None else around
         nodes = sorted(chain, key=lambda index: float(self._distances(guess)[index]))[: self.settings.scan_buffer_size]
         best_match = yield from self._match(nodes, scan, guess, search)
-        if best_match is None or best_match.response < min_response or best_match.inliers < _MIN_LINK_INLIERS:
+        if best_match is None or best_match.response < min_response or best_match.inliers < _MIN_LINK_INLIER_FRACTION:
             return None
         nearest = self._nearest_node(nodes, best_match.pose)
         pose = self.graph.poses[nearest]
-        if contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTION:
+        if contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTING_FRACTION:
             return None
         information = best_match.information + _MIN_INFORMATION * np.eye(3)
         self.graph.add_edge(nearest, number, relative_pose(pose, best_match.pose), information, is_doubtful=True)

@@ -11,7 +11,7 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.slam.poses import FloatArray, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
-_THINNING_CELL = 0.05
+_THINNING_CELL_M = 0.05
 _NEIGHBORS = 6
 _MAX_NEIGHBOR_DISTANCE = 0.5
 """The maximum distance of a point's neighbors for its wall to have a direction, in meters."""
@@ -40,7 +40,7 @@ class Reference:
             self._average_by_cell(points, sensors)
 
     def _average_by_cell(self, points: FloatArray, sensors: FloatArray) -> None:
-        cells = np.floor((points - points.min(axis=0)) / _THINNING_CELL).astype(np.int64)
+        cells = np.floor((points - points.min(axis=0)) / _THINNING_CELL_M).astype(np.int64)
         _, index = np.unique(cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1], return_inverse=True)
         counts = np.bincount(index)
 

@@ -68,7 +68,7 @@ from linkwright.vision.nodes.image_watch import ImageWatch
 from linkwright.vision.nodes.latest_worker import LatestWorker
 
 _QUEUE_DEPTH = 10
-_SECONDS_BETWEEN_ERRORS = 5.0
+_ERROR_PERIOD_S = 5.0
 _SHARE_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
 _RATE_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1000.0)])
 _SIDE_DESCRIPTOR = ParameterDescriptor(integer_range=[Range(0, MAX_SIZE)], read_only=True)
@@ -363,7 +363,7 @@ class DetectorNode(SingleNode):
             self.finished.set_result(1)
 
     def _log_error(self, problem: str) -> None:
-        self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_ERRORS)
+        self._node.get_logger().error(problem, throttle_duration_sec=_ERROR_PERIOD_S)
 
     def _publish(self, header: Any, detections: Detections, image: NDArray[np.uint8] | None) -> None:
         self._detections.publish(MESSAGE_MAKERS[self.DIALECT.message_type](header, detections))

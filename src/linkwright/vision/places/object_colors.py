@@ -27,7 +27,7 @@ _BLACK_VALUE, _WHITE_VALUE = 0.16, 0.72
 _BROWN_VALUE = 0.55
 _MIN_COLOR_SHARE = 0.35
 """The minimum fraction of pixels in the middle of a box that must have the color of the object."""
-_SAMPLED_SHARE = 0.7
+_SAMPLED_FRACTION = 0.7
 _MAX_SAMPLES = 24
 """The maximum number of pixels used along a side. Larger boxes are subsampled."""
 
@@ -47,7 +47,7 @@ def object_color(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | N
     """
     height, width = image.shape[:2]
     center = np.array([box[0] + box[2], box[1] + box[3]], np.float64) / 2
-    half_size = np.array([box[2] - box[0], box[3] - box[1]], np.float64) / 2 * _SAMPLED_SHARE
+    half_size = np.array([box[2] - box[0], box[3] - box[1]], np.float64) / 2 * _SAMPLED_FRACTION
     steps = np.linspace(-1, 1, _MAX_SAMPLES)
     columns = np.floor(center[0] + half_size[0] * steps).astype(int)
     rows = np.floor(center[1] + half_size[1] * steps).astype(int)

@@ -14,7 +14,7 @@ _FULL_TURN = 2 * pi + 0.3
 _MAX_DRIVING_BEARING = 0.6
 """The bearing in rad beyond which the robot turns to the object before it drives."""
 _TURN_GAIN, _SPEED_GAIN = 1.8, 0.8
-_MIN_SPEED = 0.06
+_MIN_SPEED_MPS = 0.06
 _DISTANCE_TOLERANCE, _BEARING_TOLERANCE = 0.03, 0.15
 _OBJECT_MARGIN = 0.2
 """The distance in m in front of the object's surface within which an obstacle counts as the object."""
@@ -163,7 +163,7 @@ class Seeker:
             return Command(0.0, angular) if self.follows_object else self._finish(Answer.ARRIVED)
         if abs(view.bearing) > _MAX_DRIVING_BEARING:
             return Command(0.0, angular)
-        speed = max(_MIN_SPEED, min(settings.speed, _SPEED_GAIN * remaining)) * (
+        speed = max(_MIN_SPEED_MPS, min(settings.speed, _SPEED_GAIN * remaining)) * (
             1.0 - abs(view.bearing) / _MAX_DRIVING_BEARING / 2
         )
         if view.free_distance < view.surface_distance - _OBJECT_MARGIN:

@@ -8,8 +8,8 @@ from typing import Any
 from linkwright.messages import get_message
 from linkwright.navigation.slam.pose_graph import PoseGraph
 
-_SPHERE_DIAMETER = 0.1
-_LINE_WIDTH = 0.02
+_SPHERE_DIAMETER_M = 0.1
+_LINE_WIDTH_M = 0.02
 
 
 def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
@@ -26,16 +26,16 @@ def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
     kind = get_message("visualization_msgs/msg/Marker")
     for number, (shape, size, color, marker_points) in enumerate(
         (
-            (kind.SPHERE_LIST, _SPHERE_DIAMETER, (1.0, 0.0, 0.0), points),
+            (kind.SPHERE_LIST, _SPHERE_DIAMETER_M, (1.0, 0.0, 0.0), points),
             (
                 kind.LINE_LIST,
-                _LINE_WIDTH,
+                _LINE_WIDTH_M,
                 (0.0, 0.0, 1.0),
                 [points[index] for index in chain.from_iterable(consecutive_edges)],
             ),
             (
                 kind.LINE_LIST,
-                _LINE_WIDTH,
+                _LINE_WIDTH_M,
                 (0.0, 0.8, 0.0),
                 [points[index] for index in chain.from_iterable(other_edges)],
             ),
