@@ -165,8 +165,8 @@ def _default_name(owner: ConfigOwner) -> str:
 def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
     """Yield the classes that a display, tool, view or panel may have, each with its purpose."""
     if owner.role == "Displays":
-        usual = {f"rviz_default_plugins/{name}": number for number, name in enumerate(_COMMON_DISPLAYS)}
-        for name in sorted(extensions(DISPLAYS), key=lambda name: usual.get(name, len(usual))):
+        common_ranks = {f"rviz_default_plugins/{name}": number for number, name in enumerate(_COMMON_DISPLAYS)}
+        for name in sorted(extensions(DISPLAYS), key=lambda name: common_ranks.get(name, len(common_ranks))):
             yield name, _purpose(name)
     elif owner.role == "Tools":
         for name, tool in TOOL_KINDS.items():

@@ -69,7 +69,7 @@ def _elements(
     else:
         offered = (rule or (root if in_macro_alone else None) or ElementRule("", "")).child_rules.values()
     present = _present_elements(document.text, cursor) if cursor.tags else frozenset()
-    free = [child for child in offered if child.many or child.tag not in present]
+    free = [child for child in offered if child.is_repeated or child.tag not in present]
     for child in sorted(free, key=lambda child: not child.required):
         snippet = mark + _element_snippet(child)
         yield Completion(child.tag, ItemKind.ELEMENT, start, _unit_of(child), describe_element(child), snippet)
@@ -109,7 +109,7 @@ def _escape(text: str) -> str:
 
 
 def _element_snippet(rule: ElementRule) -> str:
-    snippet_attributes = [attribute for attribute in rule.attributes if attribute.required or attribute.usual]
+    snippet_attributes = [attribute for attribute in rule.attributes if attribute.required or attribute.usually_written]
     attributes_text = "".join(
         f' {attribute.name}="${{{number}}}"' for number, attribute in enumerate(snippet_attributes, 1)
     )
@@ -163,7 +163,7 @@ def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinitio
         return
     rule = XACRO.get(tag) or rule_at(root, cursor.tags, cursor.elements)
     free = [] if rule is None else [attribute for attribute in rule.attributes if attribute.name not in present]
-    for attribute in sorted(free, key=lambda attribute: (not attribute.required, not attribute.usual)):
+    for attribute in sorted(free, key=lambda attribute: (not attribute.required, not attribute.usually_written)):
         yield _attribute(attribute, start, suffix)
 
 

@@ -172,9 +172,9 @@ POPULATION = ElementRule(
             value("length", NUMBER, "the length along z", "m", default="1"),
         ),
     ),
-    many=True,
+    is_repeated=True,
     make=Population,
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
     field="populations",
 )

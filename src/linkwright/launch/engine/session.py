@@ -154,7 +154,7 @@ class LaunchSession:
             self._is_visiting = False
             self._omissions.report()
 
-    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
+    def report_start_failure(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started.
 
         The launch continues without it.

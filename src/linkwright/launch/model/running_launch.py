@@ -124,7 +124,7 @@ class RunningLaunch(Protocol):
         The launch does not become idle until the coroutine has finished.
         """
 
-    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
+    def report_start_failure(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started.
 
         The launch continues without it.

@@ -21,7 +21,7 @@ from linkwright.sdf.cameras import Camera
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.optics import Optics, optics_of
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, SensorPlugin
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
 from linkwright.simulation.plugins.sensors.images import (
     DEFAULT_ENCODING,
@@ -108,7 +108,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CameraParameters(FrameName):
+class CameraParameters(FrameNameParameter):
     """Parameters of ``gazebo_ros_camera``, and of ``gazebo_ros_openni_kinect`` of ROS 1."""
 
     camera_name: str = parameter("", aliases=("cameraName",))
@@ -281,12 +281,14 @@ class GzCamera(CameraPlugin[NoParameters]):
         else:
             self._image = self.gz_output(IMAGE, "image")
         topic = camera.camera_info_topic or self._info_topic()
-        self._info = self.node.publisher(INFO, topic, usual="" if self.sensor.sensor.topic else "/camera_info")
+        self._info = self.node.publisher(
+            INFO, topic, conventional_topic="" if self.sensor.sensor.topic else "/camera_info"
+        )
 
     def _leaf_output(self, kind: str, leaf: str) -> Output:
         topic = self.sensor.sensor.topic
         return self.node.publisher(
-            kind, f"{topic}/{leaf}" if topic else self.gz_topic(leaf), usual="" if topic else f"/{leaf}"
+            kind, f"{topic}/{leaf}" if topic else self.gz_topic(leaf), conventional_topic="" if topic else f"/{leaf}"
         )
 
     def _info_topic(self) -> str:
