@@ -68,7 +68,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class InferredFact:
     """A fact about a robot that was inferred or could not be inferred.
 
     Attributes:
@@ -102,7 +102,7 @@ class Inference:
     """
 
     drive: Drive | None
-    findings: tuple[Finding, ...]
+    findings: tuple[InferredFact, ...]
     base_frame: str
     casters: tuple[str, ...] = ()
     held_joints: tuple[str, ...] = ()

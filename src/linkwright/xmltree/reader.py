@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import MAX_TEXT_BYTES, NoWriterError, read_file
 from linkwright.loading.lean_typing import TYPE_CHECKING, NoReturn
-from linkwright.xmltree.decoding import Decoded, as_decoded, decode_with_encoding
+from linkwright.xmltree.decoding import Decoded, decode_with_encoding, wrap_text
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def parse(
         LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a Git LFS pointer) or XML2xx (not well-formed XML),
             with the location.
     """
-    text, encoding = decode_with_encoding(text, name) if isinstance(text, bytes) else as_decoded(text, name)
+    text, encoding = decode_with_encoding(text, name) if isinstance(text, bytes) else wrap_text(text, name)
     document = _Reader(SourceText(name, text), blanks=blanks, read_as=read_as, any_prefix=any_prefix).read()
     document.encoding = encoding
     return document
@@ -464,7 +464,7 @@ class Overlay:
             LinkwrightError: XML101 to XML104 or XML106, the file cannot be read or is not text.
         """
         text = self.text(path)
-        return decode_with_encoding(read_bytes(path), path) if text is None else as_decoded(text, path)
+        return decode_with_encoding(read_bytes(path), path) if text is None else wrap_text(text, path)
 
 
 def _key(path: str | os.PathLike[str]) -> str:

@@ -198,7 +198,7 @@ class LaunchSession:
         """Report findings about a robot description in the log and the viewer."""
         self.reload.report(description, findings)
 
-    def number_process(self, base_name: str) -> str:
+    def assign_process_name(self, base_name: str) -> str:
         """Return the name of a process in the log: its base name with the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 

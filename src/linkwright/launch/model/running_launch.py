@@ -95,7 +95,7 @@ class RunningLaunch(Protocol):
         The folder is deleted after the launch.
         """
 
-    def number_process(self, base_name: str) -> str:
+    def assign_process_name(self, base_name: str) -> str:
         """Return the name of a process in the log: its base name with the next number."""
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.errors.locations import Located, with_location
 from linkwright.launch.model.action import parse_condition
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.markup.entity import parse_texts
+from linkwright.launch.model.markup.entity import parse_attributes
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -83,7 +83,7 @@ class ComposableNode(Located):
             "package": parser.parse_substitution(entity.get_attr("pkg")),
             "plugin": parser.parse_substitution(entity.get_attr("plugin")),
             **parse_condition(entity, parser),
-            **parse_texts(entity, parser, name="name", namespace="namespace"),
+            **parse_attributes(entity, parser, name="name", namespace="namespace"),
             **parse_remappings(entity, parser),
         }
         parameters = entity.get_attr("param", data_type=Entities, optional=True)

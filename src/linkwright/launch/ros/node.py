@@ -368,7 +368,7 @@ class Node(ExecuteProcess):
             self.__node_parameters.check(context, full_name, self.source_location)
         plan = HostedPlan(
             self,
-            session.number_process(base_name),
+            session.assign_process_name(base_name),
             package,
             executable,
             name,

@@ -81,7 +81,7 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OldImuParameters(FrameNameParameter):
+class Ros1ImuParameters(FrameNameParameter):
     """Parameters of ``gazebo_ros_imu`` of ROS 1."""
 
     body_name: str = parameter(aliases=("bodyName",))
@@ -92,13 +92,13 @@ class OldImuParameters(FrameNameParameter):
     rpy_offset: single.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))
 
 
-class OldImu(_ImuPlugin[OldImuParameters]):
+class Ros1Imu(_ImuPlugin[Ros1ImuParameters]):
     """The substitute for the model plugin ``libgazebo_ros_imu.so`` of ROS 1.
 
     A parameter names the link.
     """
 
-    PARAMETERS = OldImuParameters
+    PARAMETERS = Ros1ImuParameters
     IGNORED = ("serviceName",)
 
     @property
