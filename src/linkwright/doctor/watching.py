@@ -413,7 +413,7 @@ class _Watcher:
         ]
 
     async def _call_all(
-        self, kind: str, service: str, candidates: set[str] | None = None, **fields: Any
+        self, service_type: str, service: str, candidates: set[str] | None = None, **fields: Any
     ) -> dict[str, Any]:
         """Call a service of all nodes that offer it, and return the responses.
 
@@ -425,13 +425,13 @@ class _Watcher:
         service_names = {
             endpoint.name
             for endpoint in self.endpoints()
-            if endpoint.kind is EndpointKind.SERVICE and endpoint.type_name == kind
+            if endpoint.kind is EndpointKind.SERVICE and endpoint.type_name == service_type
         }
         nodes = [node for node in dict.fromkeys(self.nodes()) if f"{node}/{service}" in service_names]
         if candidates is not None:
             nodes = [node for node in nodes if node in candidates]
-        clients = {node: self._node.create_client(kind, f"{node}/{service}") for node in nodes}
-        request = get_service(kind).Request(**fields)
+        clients = {node: self._node.create_client(service_type, f"{node}/{service}") for node in nodes}
+        request = get_service(service_type).Request(**fields)
         futures = {node: client.call_async(request) for node, client in clients.items()}
         tasks = {node: asyncio.ensure_future(_await_result(future)) for node, future in futures.items()}
         if tasks:

@@ -274,8 +274,8 @@ class BasicNavigator(Node):
         spin_until_future_complete(self, future)
         return future.result()
 
-    def _call(self, kind: str, name: str, **request: Any) -> Any:
-        service = get_service(kind)
+    def _call(self, service_type: str, name: str, **request: Any) -> Any:
+        service = get_service(service_type)
         client = self.create_client(service, name)
         try:
             while not client.wait_for_service(timeout_sec=_LOG_PERIOD):

@@ -63,7 +63,7 @@ class BlockedSession:
 
 
 def test_process_exit_does_not_wait_for_blocked_session(monkeypatch):
-    monkeypatch.setattr("linkwright.wire.zenoh.session._CLOSING_LIMIT", 0.01)
+    monkeypatch.setattr("linkwright.wire.zenoh.session._CLOSE_TIMEOUT_S", 0.01)
     session = BlockedSession()
     start = time.monotonic()
     close_session(session)

@@ -290,9 +290,9 @@ class AmclNode(ManagedNode):
         message = get_message("nav2_msgs/msg/ParticleCloud")()
         message.header.frame_id = self._settings.global_frame
         message.header.stamp = Time.from_nanoseconds(stamp_ns)
-        kind = get_message("nav2_msgs/msg/Particle")
+        particle_class = get_message("nav2_msgs/msg/Particle")
         for (x, y, yaw), weight in zip(self._filter.particles.tolist(), self._filter.weights.tolist(), strict=True):
-            particle = kind(weight=weight)
+            particle = particle_class(weight=weight)
             _write_pose(particle.pose, (x, y, yaw))
             message.particles.append(particle)
         self._cloud_publisher.publish(message)

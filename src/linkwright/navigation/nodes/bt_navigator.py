@@ -93,14 +93,14 @@ class NavigatorNode(StepNode):
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
-    def _create_server(self, kind: str, name: str, variant: str) -> GoalServer:
+    def _create_server(self, action_type: str, name: str, variant: str) -> GoalServer:
         def begin(goal: ServerGoalHandle) -> None:
             self._start(variant, goal.request)
 
         return self.register(
             GoalServer(
                 self,
-                f"nav2_msgs/action/{kind}",
+                f"nav2_msgs/action/{action_type}",
                 name,
                 begin,
                 accepts_goal=lambda goal: self._accepts_goal(variant, goal),

@@ -364,8 +364,8 @@ class CostmapNode(ManagedNode):
         ]
         if not is_before_iron():
             services.append(("GetCost", f"get_cost_{name}", self._get_cost))
-        for kind, service, callback in services:
-            self.register(self.create_service(get_service(f"nav2_msgs/srv/{kind}"), service, callback))
+        for type_name, service, callback in services:
+            self.register(self.create_service(get_service(f"nav2_msgs/srv/{type_name}"), service, callback))
 
     def _clear_entirely(self, _request: Any, response: Any) -> Any:
         self.get_logger().info("Received request to clear entirely the " + self.get_name())

@@ -163,11 +163,11 @@ class LifecycleManager(SingleNode):
         self._managed_nodes = [_ManagedNodeClient(self._node, name) for name in self._names]
         group = ReentrantCallbackGroup()  # ``is_active`` must respond while a long command runs.
         name = self._node.get_name()
-        for kind, service, callback in (
+        for service_type, service, callback in (
             ("nav2_msgs/srv/ManageLifecycleNodes", "manage_nodes", self._on_manage),
             ("std_srvs/srv/Trigger", "is_active", self._on_is_active),
         ):
-            self._node.create_service(get_service(kind), f"{name}/{service}", callback, callback_group=group)
+            self._node.create_service(get_service(service_type), f"{name}/{service}", callback, callback_group=group)
         DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
         if self._autostart:
             self._start_task(self._run_exclusively(self._startup))

@@ -75,9 +75,9 @@ class _ManagedSmoother(ManagedNode):
         is_stamped = self._is_stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", is_stamped)
         commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
-        for kind in velocity_types(self, "cmd_vel", is_stamped):
+        for message_type in velocity_types(self, "cmd_vel", is_stamped):
             subscription: Subscription[Any] = self.create_subscription(
-                kind, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
+                message_type, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
             )
             commander.watch(self.register(subscription))
         if self._value("feedback") == "CLOSED_LOOP":

@@ -38,16 +38,16 @@ class GridCellsDisplay(TopicDisplay):
         positions = np.array(coordinates, dtype=np.float64).reshape(-1, 3)
         cell_size = (message.cell_width, message.cell_height)
         if not (np.isfinite(positions).all() and all(map(math.isfinite, cell_size))):
-            self._reject("error", phrase("Message contained invalid floating point values (nans or infs)"))
+            self._refuse("error", phrase("Message contained invalid floating point values (nans or infs)"))
         elif 0.0 in cell_size:
-            self._reject("error", phrase("One of the Cell's dimension is zero, cells will be invisible."))
+            self._refuse("error", phrase("One of the Cell's dimension is zero, cells will be invisible."))
         elif not coordinates:
-            self._reject("warn", phrase("Message is empty: there are no cells to be shown."))
+            self._refuse("warn", phrase("Message is empty: there are no cells to be shown."))
         else:
             content = CellGrid(positions.astype(np.float32), float(cell_size[0]), float(cell_size[1]))
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
-    def _reject(self, level: StatusLevel, text: Phrase) -> None:
+    def _refuse(self, level: StatusLevel, text: Phrase) -> None:
         """Remove the cells, and show the reason in the status row of the topic, as in RViz."""
         self.forget()
         self.set_status_row(TOPIC, level, text)

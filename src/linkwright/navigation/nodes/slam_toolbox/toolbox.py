@@ -91,8 +91,8 @@ class Toolbox:
         self._metadata_publisher = node.create_publisher(
             message("nav_msgs/msg/MapMetaData"), f"{name}_metadata", LATCHED_QOS
         )
-        kind = message("visualization_msgs/msg/MarkerArray")
-        self._graph_publisher = node.create_publisher(kind, "slam_toolbox/graph_visualization", 1)
+        markers_class = message("visualization_msgs/msg/MarkerArray")
+        self._graph_publisher = node.create_publisher(markers_class, "slam_toolbox/graph_visualization", 1)
         self._transforms = node.create_publisher(TFMessage, "/tf", TF_QOS)
         self._step_guard = node.create_guard_condition(self._step)
         self._jump_guard = node.create_guard_condition(self._on_time_jump)

@@ -177,11 +177,11 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
             ]
         self._is_image_requested = not parameters.triggered
         if parameters.triggered:
-            kind = get_message("std_msgs/msg/Empty")
-            self.node.subscribe(kind, f"{name}/image_trigger", self._trigger)
+            trigger_class = get_message("std_msgs/msg/Empty")
+            self.node.subscribe(trigger_class, f"{name}/image_trigger", self._trigger)
 
-    def _output(self, kind: str, base: str, topic: str) -> Output:
-        return self.node.publisher(kind, topic if topic.startswith("/") else f"{base}/{topic}", SENSOR_QOS)
+    def _output(self, message_type: str, base: str, topic: str) -> Output:
+        return self.node.publisher(message_type, topic if topic.startswith("/") else f"{base}/{topic}", SENSOR_QOS)
 
     def _trigger(self, _message: Any) -> None:
         self._is_image_requested = True
@@ -285,10 +285,12 @@ class GzCamera(CameraPlugin[NoParameters]):
             INFO, topic, conventional_topic="" if self.sensor.sensor.topic else "/camera_info"
         )
 
-    def _leaf_output(self, kind: str, leaf: str) -> Output:
+    def _leaf_output(self, message_type: str, leaf: str) -> Output:
         topic = self.sensor.sensor.topic
         return self.node.publisher(
-            kind, f"{topic}/{leaf}" if topic else self.gz_topic(leaf), conventional_topic="" if topic else f"/{leaf}"
+            message_type,
+            f"{topic}/{leaf}" if topic else self.gz_topic(leaf),
+            conventional_topic="" if topic else f"/{leaf}",
         )
 
     def _info_topic(self) -> str:
