@@ -129,7 +129,7 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
         elements: their start tags, which determine the parameters of simulator plugins, or an empty sequence.
     """
     current: ElementRule | None = None
-    for number, tag in enumerate(tags):
+    for index, tag in enumerate(tags):
         if tag.startswith(PREFIX):
             continue
         if current is None:
@@ -138,8 +138,8 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
             current = current.child_rules.get(tag) or _rule_in_macro(root, tags, tag)
         if current is None:
             return None
-        if tag == "plugin" and "filename" in current.attribute_rules and number < len(elements):
-            current = _rule_of_plugin(elements[number]) or current
+        if tag == "plugin" and "filename" in current.attribute_rules and index < len(elements):
+            current = _rule_of_plugin(elements[index]) or current
     return current
 
 

@@ -64,11 +64,11 @@ def generate_probes(workspace: Workspace, texts: Mapping[Path, str], name: Occur
         return {}
     calls = [*dict.fromkeys(_generate_calls(macro))]
     return {
-        name.file.parent / f".linkwright-probe-{number}.urdf.xacro": (
+        name.file.parent / f".linkwright-probe-{index}.urdf.xacro": (
             f'<robot name="probe" xmlns:xacro="{_XACRO}">\n'
             f"  <xacro:include filename={quoteattr(name.file.name)}/>\n{call}\n</robot>\n"
         )
-        for number, call in enumerate(calls)
+        for index, call in enumerate(calls)
     }
 
 

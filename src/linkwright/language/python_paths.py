@@ -104,14 +104,14 @@ class PythonPaths:
             return None
         value: Value | None = None
         mark = ""
-        for number, part in enumerate(parts):
+        for index, part in enumerate(parts):
             if isinstance(part, Operator):
-                if part.value not in ("+", "/") or number == 0:
+                if part.value not in ("+", "/") or index == 0:
                     return None
                 mark = part.value
                 continue
             term = self._term(part, depth)
-            if value is None and number > 0:
+            if value is None and index > 0:
                 return None
             if term is None:
                 return None

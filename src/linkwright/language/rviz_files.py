@@ -165,7 +165,7 @@ def _default_name(owner: ConfigOwner) -> str:
 def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
     """Yield the classes that a display, tool, view or panel may have, each with its purpose."""
     if owner.role == "Displays":
-        common_ranks = {f"rviz_default_plugins/{name}": number for number, name in enumerate(_COMMON_DISPLAYS)}
+        common_ranks = {f"rviz_default_plugins/{name}": index for index, name in enumerate(_COMMON_DISPLAYS)}
         for name in sorted(extensions(DISPLAYS), key=lambda name: common_ranks.get(name, len(common_ranks))):
             yield name, _purpose(name)
     elif owner.role == "Tools":

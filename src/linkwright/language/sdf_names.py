@@ -182,7 +182,7 @@ def _references(element: SourceElement, text: str) -> Iterator[tuple[str, int, S
 def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the name of a model or link in the state of a world, as a use of that name."""
     lineage = [*element.ancestors_and_self()]
-    state = next((number for number, outer in enumerate(lineage) if outer.name == "state"), None)
+    state = next((index for index, outer in enumerate(lineage) if outer.name == "state"), None)
     scope = None if state is None else _scope(lineage[state].parent)
     name = next(
         (candidate for candidate in element.tag.attributes() if candidate.name == "name" and candidate.value), None

@@ -93,7 +93,7 @@ class _Renderer:
         self._shadow = shadow_map(mesh, lights.key) if is_on_ground else None
         self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
         self._anchors = {None: (), "links": scene.labels.links, "joints": scene.labels.joints}[style.labels]
-        numbers = {id(body): number for number, body in enumerate(dict.fromkeys(mesh.bodies))}
+        numbers = {id(body): index for index, body in enumerate(dict.fromkeys(mesh.bodies))}
         self._body_numbers = np.array([numbers[id(body)] for body in mesh.bodies], np.int32)
 
     def image(self) -> Image:

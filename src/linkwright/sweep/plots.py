@@ -48,9 +48,7 @@ class Axis:
         if not from_zero:
             low = floor(low / step) * step
         high = ceil(high / step) * step
-        ticks = [
-            (low + step * number, f"{low + step * number:.6g}") for number in range(round((high - low) / step) + 1)
-        ]
+        ticks = [(low + step * index, f"{low + step * index:.6g}") for index in range(round((high - low) / step) + 1)]
         return cls(
             low,
             high,

@@ -98,14 +98,14 @@ class Forwarding:
         node: the node that subscribes.
         channel: the channel to forward.
         client: the client that receives the messages.
-        number: the client's ID of the subscription.
+        subscription_id: the client's ID of the subscription.
     """
 
-    def __init__(self, node: Node, channel: Channel, client: Client, number: int) -> None:
+    def __init__(self, node: Node, channel: Channel, client: Client, subscription_id: int) -> None:
         self.channel = channel
         self._node = node
         self._client = client
-        self._number = number
+        self._subscription_id = subscription_id
         self._subscription: Subscription[Any] = Subscription(
             node.handle, get_message(channel.type_name), channel.topic, self._qos(), self._forward, raw=True
         )
@@ -127,7 +127,7 @@ class Forwarding:
 
     def _forward(self, data: bytes, info: MessageInfo) -> None:
         stamp = info.source_timestamp or self._node.get_clock().now().nanoseconds
-        self._client.send_data(message_data(self._number, stamp, bytes(data)))
+        self._client.send_data(message_data(self._subscription_id, stamp, bytes(data)))
 
 
 class Publication:

@@ -182,6 +182,6 @@ class Judge:
         revision, names = self._geom_models
         if revision != self.simulation.revision:
             model = self.simulation.model
-            names = [model.geom(number).name.partition(SEPARATOR)[0] for number in range(model.ngeom)]
+            names = [model.geom(index).name.partition(SEPARATOR)[0] for index in range(model.ngeom)]
             self._geom_models = (self.simulation.revision, names)
         return names

@@ -108,16 +108,16 @@ class LikelihoodField:
         finest_level[finest_level < _MIN_LIKELIHOOD] = 0.0
         self._levels: list[NDArray[np.float32]] = [finest_level]
 
-    def level(self, number: int) -> tuple[NDArray[np.float32], int]:
-        """Return the grid of maxima over blocks of 2^number x 2^number cells.
+    def level(self, exponent: int) -> tuple[NDArray[np.float32], int]:
+        """Return the grid of maxima over blocks of 2^exponent x 2^exponent cells.
 
         Returns:
             The grid and an offset n: cell (row + n, column + n) is the maximum of the block that begins at (row,
                 column).
         """
-        while len(self._levels) <= number:
+        while len(self._levels) <= exponent:
             finer_level, step = self._levels[-1], 1 << (len(self._levels) - 1)
             rows = np.maximum(np.pad(finer_level, ((step, 0), (0, 0))), np.pad(finer_level, ((0, step), (0, 0))))
             coarser_level = np.maximum(np.pad(rows, ((0, 0), (step, 0))), np.pad(rows, ((0, 0), (0, step))))
             self._levels.append(np.ascontiguousarray(coarser_level))
-        return self._levels[number], (1 << number) - 1
+        return self._levels[exponent], (1 << exponent) - 1

@@ -337,7 +337,7 @@ class CMakeProgram:
             return
         outer_variables = dict(self.variables)
         bindings = dict(zip(routine.parameters, words, strict=False))
-        bindings |= {f"ARGV{number}": word for number, word in enumerate(words)}
+        bindings |= {f"ARGV{index}": word for index, word in enumerate(words)}
         bindings |= {
             "ARGV": ";".join(words),
             "ARGN": ";".join(words[len(routine.parameters) :]),

@@ -199,11 +199,11 @@ def _make_markers(form: DetectionFormat, detection_array: Any, positions: list[O
     marker_class = get_message("visualization_msgs/msg/Marker")
     marker_array = get_message("visualization_msgs/msg/MarkerArray")()
     marker_array.markers.append(marker_class(header=detection_array.header, action=marker_class.DELETEALL))
-    for number, (detection, position) in enumerate(zip(detection_array.detections, positions, strict=True)):
+    for index, (detection, position) in enumerate(zip(detection_array.detections, positions, strict=True)):
         name, _ = form.best_hypothesis(detection)
         box_3d = form.box_3d(detection)
         box, label = (
-            marker_class(header=detection_array.header, ns=ns, id=number, type=shape, action=marker_class.ADD)
+            marker_class(header=detection_array.header, ns=ns, id=index, type=shape, action=marker_class.ADD)
             for ns, shape in (("boxes", marker_class.CUBE), ("labels", marker_class.TEXT_VIEW_FACING))
         )
         box.lifetime.sec = label.lifetime.sec = _MARKER_LIFETIME_SECONDS
