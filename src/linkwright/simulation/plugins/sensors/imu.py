@@ -92,7 +92,7 @@ class Ros1ImuParameters(FrameNameParameter):
     rpy_offset: single.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))
 
 
-class Ros1Imu(_ImuPlugin[Ros1ImuParameters]):
+class OldImu(_ImuPlugin[Ros1ImuParameters]):
     """The substitute for the model plugin ``libgazebo_ros_imu.so`` of ROS 1.
 
     A parameter names the link.

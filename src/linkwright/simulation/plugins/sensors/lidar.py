@@ -197,7 +197,7 @@ class LaserParameters(FrameNameParameter):
     update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
 
 
-class Ros1Laser(_OneLidar[LaserParameters]):
+class OldLaser(_OneLidar[LaserParameters]):
     """The substitute for ``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so`` of ROS 1."""
 
     PARAMETERS = LaserParameters
@@ -225,7 +225,7 @@ class Ros1Laser(_OneLidar[LaserParameters]):
         return self.scan_message(frame, scan)
 
 
-class Ros1BlockLaser(Ros1Laser):
+class OldBlockLaser(OldLaser):
     """The substitute for ``libgazebo_ros_block_laser.so`` of ROS 1: it publishes a PointCloud."""
 
     KIND = "sensor_msgs/msg/PointCloud"
@@ -243,7 +243,7 @@ class RangeParameters(LaserParameters):
     radiation: str = "ultrasound"
 
 
-class Ros1Range(Ros1Laser):
+class OldRange(OldLaser):
     """The substitute for ``libgazebo_ros_range.so`` of ROS 1: it publishes minimum distances."""
 
     PARAMETERS = RangeParameters
