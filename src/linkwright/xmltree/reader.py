@@ -179,8 +179,8 @@ class _Reader:
         parser.buffer_text = True
         parser.specified_attributes = True  # ignore attribute defaults of a DTD, which are not written in the document
         parser.buffer_size = max(1024, min(len(self._data), 1 << 20))
-        parser.CommentHandler = self._comment
-        parser.ProcessingInstructionHandler = self._instruction
+        parser.CommentHandler = self._add_comment
+        parser.ProcessingInstructionHandler = self._add_instruction
         parser.StartCdataSectionHandler = self._start_cdata
         parser.EndCdataSectionHandler = self._end_cdata
         parser.StartDoctypeDeclHandler = self._start_doctype
@@ -250,8 +250,8 @@ class _Reader:
         root_index, root = next((index, node) for index, node in enumerate(top_nodes) if isinstance(node, Element))
         document = Document(root, self._source)
         document.prolog, document.epilog = (
-            _comments_and_instructions(top_nodes[:root_index]),
-            _comments_and_instructions(top_nodes[root_index + 1 :]),
+            _select_comments_and_instructions(top_nodes[:root_index]),
+            _select_comments_and_instructions(top_nodes[root_index + 1 :]),
         )
         document.doctype, document.doctype_index = self._doctype, self._doctype_at
         if not self._is_ascii:
@@ -335,10 +335,10 @@ class _Reader:
 
     # comments and processing instructions
 
-    def _comment(self, data: str) -> None:
+    def _add_comment(self, data: str) -> None:
         self._append(Comment(data, self._source, self._parser.CurrentByteIndex))
 
-    def _instruction(self, target: str, data: str) -> None:
+    def _add_instruction(self, target: str, data: str) -> None:
         self._append(ProcessingInstruction(target, data, self._source, self._parser.CurrentByteIndex))
 
     def _append(self, node: Comment | ProcessingInstruction) -> None:
@@ -403,7 +403,7 @@ def _declared_prefixes(element: Element) -> list[str]:
     return [name[6:] for name in element.attributes if name.startswith("xmlns:")]
 
 
-def _comments_and_instructions(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
+def _select_comments_and_instructions(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
     return [node for node in nodes if isinstance(node, (Comment, ProcessingInstruction))]
 
 

@@ -63,19 +63,19 @@ class WireTypes:
     def _describe(self, structure: Structure) -> Any:
         with self._lock:
             if structure not in self._classes:
-                self._classes[structure] = struct_class(dds_type(structure.type_name), self._members(structure))
+                self._classes[structure] = struct_class(dds_type(structure.type_name), self._make_members(structure))
             return self._classes[structure]
 
-    def _members(self, structure: Structure) -> dict[str, Any]:
+    def _make_members(self, structure: Structure) -> dict[str, Any]:
         members: dict[str, Any] = {}
         try:
             for field in structure.wire_fields:
-                members[field.name] = self._member(field.type)
+                members[field.name] = self._make_member(field.type)
         except UndescribableError:
             return {}  # Without members, only the name is described, as real ROS 2 nodes do.
         return members
 
-    def _member(self, field: FieldType) -> Any:
+    def _make_member(self, field: FieldType) -> Any:
         types = _idl_types()
         element = self._element(field)
         if field.container is Container.ARRAY:
