@@ -74,7 +74,8 @@ _POLL_SECONDS = 0.01
 _TRANSFORMS_WITHIN = 5.0
 """The maximum additional seconds to wait while published transforms were not received."""
 
-_NORM_TOLERANCE = 1e-3
+_MIN_QUATERNION_NORM = 1e-3
+"""A rotation with a smaller norm was not set."""
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """The stamp of a header at the start of a message, by byte order.
 
@@ -475,5 +476,5 @@ def _is_transform(transform: Any) -> bool:
     numbers = (rotation.x, rotation.y, rotation.z, rotation.w, translation.x, translation.y, translation.z)
     return (
         all(map(math.isfinite, numbers))
-        and math.hypot(rotation.x, rotation.y, rotation.z, rotation.w) > _NORM_TOLERANCE
+        and math.hypot(rotation.x, rotation.y, rotation.z, rotation.w) > _MIN_QUATERNION_NORM
     )

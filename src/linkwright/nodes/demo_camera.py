@@ -12,6 +12,7 @@ from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _BAND_HEIGHT_FRACTION = 1 / 3
+"""The height of the band with a gradient, as a fraction of the image's height."""
 
 
 class DemoCamera(SingleNode):

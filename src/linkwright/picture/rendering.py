@@ -34,6 +34,7 @@ _LINE_REACH = 8
 _PEELED_LAYERS = 3
 """The maximum number of transparent surfaces drawn behind each other."""
 _GHOST_ALPHA = 0.38
+"""The opacity of a ghost, from 0 to 1."""
 _EDGE_LIGHT = 0.012
 _UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
 """The colors of the background at the top and at the bottom."""

@@ -34,6 +34,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 DEFAULT_CACHE_TIME = Duration(seconds=10)
 _QUATERNION_TOLERANCE = 10e-3
+"""The maximum deviation of a quaternion's squared length from 1."""
 _OLD_DATA_PERIOD_S = 2.0
 """The minimum time between two warnings about old data, in seconds.
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from linkwright.simulation.simulation import Simulation
 
 _MAX_UNSOLVED_POINTS = 40.0
+"""The maximum number of points, of 100, for an exercise that is not solved."""
 _COLLISION_PAUSE_S = 1.0
 """The time without a contact after which the next contact is another collision."""
 

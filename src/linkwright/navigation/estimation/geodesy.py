@@ -15,6 +15,7 @@ from linkwright.geometry.single import Vector3, dot
 
 _EQUATORIAL_RADIUS_M = 6378137.0
 _FLATTENING = 1.0 / 298.257223563
+"""The flattening of the ellipsoid of WGS 84."""
 _ECCENTRICITY_SQUARED = _FLATTENING * (2.0 - _FLATTENING)
 _ECCENTRICITY = sqrt(_ECCENTRICITY_SQUARED)
 _N = _FLATTENING / (2.0 - _FLATTENING)

@@ -21,17 +21,19 @@ from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
 from linkwright.navigation.slam.steps import Steps
 
-_TRAVEL_SHARE = 0.8
-"""The share of the minimum travel distance after which a scan is processed, because odometry may be wrong."""
+_TRAVEL_FRACTION = 0.8
+"""The fraction of the minimum travel distance after which a scan is processed, because odometry may be wrong."""
 _MIN_INLIER_FRACTION = 0.25
+"""The minimum fraction of a scan's points that must fit for a match."""
 _MIN_LINK_INLIER_FRACTION = 0.4
 """The minimum shares of points on known walls, for any match and for a match with an earlier pass."""
 _MAX_CONTRADICTING_FRACTION = 0.15
+"""The maximum contradiction of two linked scans, as a fraction of the points."""
 _MAX_LINK_VARIANCE = 0.01
 """A link to an earlier pass closes the loop if the variance of its position is below this, in square meters."""
 _MAX_LOOP_CANDIDATES = 3
-_REDRAW_SHARE = 0.2
-"""A scan is redrawn if its points at `_FAR_POINT_DISTANCE_M` moved by at least this share of a cell."""
+_REDRAW_FRACTION = 0.2
+"""A scan is redrawn if its points at `_FAR_POINT_DISTANCE_M` moved by at least this fraction of a cell."""
 _FAR_POINT_DISTANCE_M = 5.0
 _MIN_INFORMATION = 1e-3
 """Information added in all directions, so that the matrix can be inverted."""
@@ -131,7 +133,7 @@ class Mapper:
             return False
         motion = relative_pose(pose, odometry)
         return bool(
-            np.hypot(motion[0], motion[1]) >= _TRAVEL_SHARE * self.settings.minimum_travel_distance
+            np.hypot(motion[0], motion[1]) >= _TRAVEL_FRACTION * self.settings.minimum_travel_distance
             or abs(motion[2]) >= self.settings.minimum_travel_heading
         )
 
@@ -200,7 +202,7 @@ class Mapper:
 
         Each scan is a step.
         """
-        tolerance = _REDRAW_SHARE * self.occupancy.resolution
+        tolerance = _REDRAW_FRACTION * self.occupancy.resolution
         for index, scan in enumerate(self.scans):
             pose, drawn_pose = self.graph.poses[index], self.occupancy.drawn_pose(index)
             if drawn_pose is not None:

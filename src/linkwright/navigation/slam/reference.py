@@ -16,6 +16,7 @@ _NEIGHBORS = 6
 _MAX_NEIGHBOR_DISTANCE = 0.5
 """The maximum distance of a point's neighbors for its wall to have a direction, in meters."""
 _MIN_LIKELIHOOD = 0.01
+"""Smaller likelihoods count as 0."""
 
 
 class Reference:

@@ -18,6 +18,7 @@ from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.projection import Pinhole, scan_from_depths
 
 _METERS_OF_16UC1 = 0.001
+"""The unit of depths in images with the encoding 16UC1, in m."""
 _ERROR_PERIOD_S = 5.0
 
 

@@ -21,6 +21,7 @@ from linkwright.simulation.sensors.noise import NoiseSource, VectorNoise
 
 _EQUATORIAL_RADIUS_M = 6378137.0
 _FLATTENING = 1 / 298.257223563
+"""The flattening of the ellipsoid of WGS 84."""
 _SQUARED_ECCENTRICITY = _FLATTENING * (2 - _FLATTENING)
 _ITERATIONS = 5
 """The number of iterations for the latitude. Each iteration reduces the error to less than a hundredth."""

@@ -17,6 +17,7 @@ _SILENT_EDGE = 3  # the number of frames at both ends of a recording that must n
 _MIN_RMS = 60.0  # the minimum RMS value of the loudest 50 ms, in steps of a 16-bit sample: -55 dB of full scale
 _MIN_SIGNAL_TO_NOISE = 8.0  # the minimum level above the noise in dB, as the mean over the bands of the loudest frames
 _MAX_CLIPPED_FRACTION = 0.01
+"""The maximum fraction of the samples that may be clipped."""
 _CLIPPED_LEVEL = 32_700
 _MAX_OWN_DISTANCE = 0.7  # a multiple of the distance to a reversed word; 3 of 4 different words exceed it
 _SIMILAR_DISTANCE = 0.85  # a multiple of the distance to another word

@@ -19,7 +19,7 @@ _MAX_ODOMETRY_AGE = 0.5
 """The maximum age of odometry in s. Without fresh odometry, the distance is computed from the commands."""
 _SPEED_GAIN = 3.0
 """The speed divided by the remaining distance, near the end, in 1/s."""
-_MIN_SPEED_SHARE = 0.15
+_MIN_SPEED_FRACTION = 0.15
 """The minimum fraction of the speed, however short the remaining distance is."""
 _TOLERANCES = {"distance": 0.005, "angle": 0.005}
 """The remaining distance in m or angle in rad at which a drive is finished."""
@@ -134,7 +134,7 @@ class Driver:
             self._publish(
                 1.0
                 if self._kind == "duration"
-                else min(1.0, max(_SPEED_GAIN * self._remaining / rate, _MIN_SPEED_SHARE))
+                else min(1.0, max(_SPEED_GAIN * self._remaining / rate, _MIN_SPEED_FRACTION))
             )
 
     def _finish(self, ending: Ending) -> None:

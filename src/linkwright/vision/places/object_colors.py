@@ -25,9 +25,10 @@ _PINK_HUES = (292, 340)
 _GRAY_SATURATION, _GRAY_CHROMA = 0.22, 0.10
 _BLACK_VALUE, _WHITE_VALUE = 0.16, 0.72
 _BROWN_VALUE = 0.55
-_MIN_COLOR_SHARE = 0.35
+_MIN_COLOR_FRACTION = 0.35
 """The minimum fraction of pixels in the middle of a box that must have the color of the object."""
 _SAMPLED_FRACTION = 0.7
+"""The central fraction of a box's width and height whose pixels are sampled."""
 _MAX_SAMPLES = 24
 """The maximum number of pixels used along a side. Larger boxes are subsampled."""
 
@@ -61,10 +62,10 @@ def object_color(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | N
     bright_counts = counts.copy()
     bright_counts[[COLORS.index(name) for name in ("white", "grey", "black")]] = 0
     best = int(np.argmax(bright_counts))
-    if bright_counts[best] >= _MIN_COLOR_SHARE:
+    if bright_counts[best] >= _MIN_COLOR_FRACTION:
         return COLORS[best]
     best = int(np.argmax(counts))
-    return COLORS[best] if counts[best] >= _MIN_COLOR_SHARE else None
+    return COLORS[best] if counts[best] >= _MIN_COLOR_FRACTION else None
 
 
 def classify_colors(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:

@@ -17,6 +17,7 @@ _MAX_DRIVING_BEARING = 0.6
 _TURN_GAIN, _SPEED_GAIN = 1.8, 0.8
 """The angular speed per bearing, and the speed per remaining distance, in 1/s."""
 _MIN_SPEED_MPS = 0.06
+"""The minimum speed while the robot approaches the object."""
 _DISTANCE_TOLERANCE_M, _BEARING_TOLERANCE_RAD = 0.03, 0.15
 _OBJECT_MARGIN = 0.2
 """The distance in m in front of the object's surface within which an obstacle counts as the object."""
