@@ -32,10 +32,10 @@ class ZenohRouter(SingleNode):
             )
         from linkwright.wire.zenoh.opening import ObstacleReporter
         from linkwright.wire.zenoh.reaching import configured_addresses
-        from linkwright.wire.zenoh.session import close_session, configuration, listen_endpoints, open_session
+        from linkwright.wire.zenoh.session import build_config, close_session, listen_endpoints, open_session
         from linkwright.wire.zenoh.settings import read_router_settings
 
-        config = configuration(read_router_settings())
+        config = build_config(read_router_settings())
         self._session = open_session(config)
         try:
             self._node, _ = create_node(graph, options, self.DEFAULT_NAME)

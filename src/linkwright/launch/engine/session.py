@@ -319,7 +319,7 @@ class LaunchSession:
             raise explained_error from error
         future = entity.get_asyncio_future()
         if future is not None:
-            self.hold(future)
+            self.keep_running_until(future)
         try:
             for next_entity in next_entities or ():
                 self._visit(next_entity, context, depth + 1)
@@ -416,7 +416,7 @@ class LaunchSession:
         if waits_for_fix and not self.host.has_viewer and not self.is_ending:
             self.shut_down("the robot description has errors, and there is no viewer that waits for a fix")
 
-    def hold(self, future: asyncio.Future[Any]) -> None:
+    def keep_running_until(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until a future is done."""
         if future.done() or future in self._held_futures:
             return

@@ -43,7 +43,7 @@ class NodeHosting(Protocol):
     def launcher_node(self) -> Node:
         """The launcher's own node for services and topics, created on first use."""
 
-    def plan(self, plan: HostedPlan) -> None:
+    def schedule_node(self, plan: HostedPlan) -> None:
         """Schedule the start of the node that a plan describes.
 
         This method has no effect while the launch is ending.
@@ -115,7 +115,7 @@ class RunningLaunch(Protocol):
         Return a function that cancels both.
         """
 
-    def hold(self, future: asyncio.Future[Any]) -> None:
+    def keep_running_until(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until a future is done."""
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:

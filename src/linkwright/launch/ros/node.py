@@ -384,7 +384,7 @@ class Node(ExecuteProcess):
         )
         self.process_description.final_name = plan.process_name
         self.process_description.final_cmd = plan.details["cmd"]
-        session.host.plan(plan)
+        session.host.schedule_node(plan)
         return plan.process_name
 
     # --- in a separate process --------------------------------------------------------------------------------

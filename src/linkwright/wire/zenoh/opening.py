@@ -14,7 +14,7 @@ import zenoh
 
 from linkwright.diagnostics import joined
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.zenoh.reaching import configured_addresses, mode_value, obstacles
+from linkwright.wire.zenoh.reaching import configured_addresses, connection_problems, mode_value
 from linkwright.wire.zenoh.session import is_connection_failure, open_session, session_error
 
 _RETRY_INTERVAL_S = 1.0
@@ -115,7 +115,7 @@ class ObstacleReporter:
                 pause_s = _LOG_DELAY_S
                 continue
             reasons = (
-                joined(obstacles(self._config), "; ")
+                joined(connection_problems(self._config), "; ")
                 or f"{', '.join(configured_addresses(self._config))} does not accept a session"
             )
             if not self._end_event.is_set() and not self._is_connected():

@@ -44,16 +44,16 @@ def mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
     return default if value is None else value
 
 
-def obstacles(config: zenoh.Config) -> list[Phrase]:
+def connection_problems(config: zenoh.Config) -> list[Phrase]:
     """Return the known reasons why a session cannot connect to its addresses."""
     tls = json.loads(config.get_json("transport/link/tls")) or {}
-    found = [found for address in configured_addresses(config) if (found := obstacle(address, tls))]
+    found = [found for address in configured_addresses(config) if (found := connection_problem(address, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
         found.append(phrase("the process at this address may have the same 'id': leave 'id' out of the configuration"))
     return found
 
 
-def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
+def connection_problem(address: str, tls: Mapping[str, Any]) -> Phrase:
     """Return the reason why a connection to an address fails.
 
     Return an empty phrase if no reason is found.

@@ -9,7 +9,7 @@ import threading
 import zenoh
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, foreign, phrase
-from linkwright.wire.zenoh.reaching import obstacles
+from linkwright.wire.zenoh.reaching import connection_problems
 from linkwright.wire.zenoh.settings import OVERRIDES, Settings
 
 _SOURCE_LOCATION = re.compile(r"\s+at /\S+?:\d+\.?")
@@ -49,7 +49,7 @@ def close_session(session: zenoh.Session) -> None:
 
 def session_error(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
     """Return the error DDS112 for a session that cannot be opened."""
-    reasons = obstacles(config) if is_connection_failure(error) else []
+    reasons = connection_problems(config) if is_connection_failure(error) else []
     return LinkwrightError(
         Diagnostic(
             "DDS112",
@@ -71,7 +71,7 @@ def is_client(settings: Settings) -> bool:
     Raises:
         LinkwrightError: DDS111, the configuration is refused.
     """
-    return bool(json.loads(configuration(settings).get_json("mode")) == "client")
+    return bool(json.loads(build_config(settings).get_json("mode")) == "client")
 
 
 def listen_endpoints(config: zenoh.Config) -> list[str]:
@@ -83,7 +83,7 @@ def listen_endpoints(config: zenoh.Config) -> list[str]:
     return [str(address) for address in addresses] if isinstance(addresses, list) else []
 
 
-def configuration(settings: Settings) -> zenoh.Config:
+def build_config(settings: Settings) -> zenoh.Config:
     """Return the Zenoh configuration that follows from the settings.
 
     Raises:

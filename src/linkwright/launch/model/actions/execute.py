@@ -411,7 +411,7 @@ class ExecuteProcess(ExecuteLocal):
             destinations=self._destinations(context),
         )
         description.final_name, description.final_cmd = plan.process_name, list(arguments)
-        context.session.host.plan(plan)
+        context.session.host.schedule_node(plan)
         return True
 
     @property
