@@ -66,7 +66,7 @@ def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
         true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
         told = relative_pose(true, compose(toolbox._map_to_odom, drift.pose))
         odometry = relative_pose(true, drift.pose)
-        occupied = house.occupied_of(toolbox.grid())
+        occupied = house.occupied_centers(toolbox.grid())
         near = occupied[house.distances(walls, occupied) < 0.2]
         return _Tour(
             float(np.hypot(odometry[0], odometry[1])),

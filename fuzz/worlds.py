@@ -35,7 +35,7 @@ _REFERENCES = [
     ' rotation_format="quat_xyzw"',
     ' degrees="1"',
 ]
-_DEEPEST = 12
+_MAX_DEPTH = 12
 
 
 def world(choices: Choices) -> str:
@@ -53,8 +53,8 @@ def _element(choices: Choices, rule: ElementRule, depth: int) -> str:
         return f"<{rule.tag}>{value}</{rule.tag}>"
     attributes = "".join(_attribute(choices, attribute.name) for attribute in rule.attributes)
     inside = ""
-    children = (*rule.children, rule) if rule.nests else rule.children
-    if children and depth < _DEEPEST:
+    children = (*rule.children, rule) if rule.is_recursive else rule.children
+    if children and depth < _MAX_DEPTH:
         inside = "".join(_element(choices, choices.pick(children), depth + 1) for _ in range(choices.number(5)))
     return f"<{rule.tag}{attributes}>{inside}</{rule.tag}>"
 

@@ -130,10 +130,10 @@ def _recording(declarations: Declarations, given: Mapping[str, Any]) -> Iterator
         declared.append((store, name, default, descriptor))
         return declare(store, name, default, descriptor, **options)
 
-    def reading(reader: Any, table: Any, prefix: str = "", usual: Any = None) -> Any:
+    def reading(reader: Any, table: Any, prefix: str = "", defaults: Any = None) -> Any:
         for entry in parameter_tables.entries(table, prefix):
             tables.setdefault((reader._node.get_name(), entry.name), entry)
-        return read(reader, table, prefix, usual)
+        return read(reader, table, prefix, defaults)
 
     with (
         mock.patch.object(NodeParameters, "__init__", starting),

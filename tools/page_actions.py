@@ -33,7 +33,7 @@ from pathlib import Path
 
 from playwright.sync_api import Locator, Page
 
-PATIENCE = 60_000
+TIMEOUT_MS = 60_000
 """The timeout of an action, in milliseconds."""
 
 
@@ -87,13 +87,13 @@ class Terminals:
     def run(self, command: str) -> str:
         """Run a command to its end, and return its output."""
         program = self.start(command)
-        output, _ = program.communicate(timeout=PATIENCE / 1000)
+        output, _ = program.communicate(timeout=TIMEOUT_MS / 1000)
         self.running.remove(program)
         return output
 
     def wait_for_topic(self, topic: str) -> None:
         """Wait until a topic is listed."""
-        for _ in range(PATIENCE // 1000):
+        for _ in range(TIMEOUT_MS // 1000):
             if topic in self.run("linkwright topic list").split():
                 return
             time.sleep(0.5)
@@ -124,7 +124,7 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
         case "wait":
             page.wait_for_timeout(float(text) * 1000)
         case "until":
-            page.wait_for_function(f"(() => {{ const lw = window.linkwright; return {text}; }})()", timeout=PATIENCE)
+            page.wait_for_function(f"(() => {{ const lw = window.linkwright; return {text}; }})()", timeout=TIMEOUT_MS)
         case "drawn":
             display = f"lw.displays.find((each) => each.name === '{text}')"
             act(page, terminals, f"until {display}?.status.some((row) => / messages? received/.test(row.text))")
@@ -148,9 +148,9 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
             for name, _, value in (setting.partition("=") for setting in values):
                 _write(_row(page, "Views", name), value)
         case "click":
-            page.get_by_text(text, exact=True).first.click(timeout=PATIENCE)
+            page.get_by_text(text, exact=True).first.click(timeout=TIMEOUT_MS)
         case "press":
-            page.get_by_role("button", name=text, exact=True).last.click(timeout=PATIENCE)
+            page.get_by_role("button", name=text, exact=True).last.click(timeout=TIMEOUT_MS)
         case "key":
             page.keyboard.press(text)
         case "point" | "drag":
@@ -163,7 +163,7 @@ def _add_display(page: Page, topic: str) -> None:
     page.get_by_role("button", name="Add", exact=True).first.click()
     page.get_by_role("tab", name="By topic").click()
     choice = page.get_by_role("group", name=topic, exact=True).get_by_role("option").first
-    choice.click(timeout=PATIENCE)
+    choice.click(timeout=TIMEOUT_MS)
     page.get_by_role("dialog").get_by_role("button", name="Add", exact=True).click()
     page.get_by_role("dialog").wait_for(state="hidden")
 
@@ -181,7 +181,7 @@ def _row(page: Page, panel: str, path: str) -> Locator:
 
 
 def _write(row: Locator, value: str) -> None:
-    row.scroll_into_view_if_needed(timeout=PATIENCE)
+    row.scroll_into_view_if_needed(timeout=TIMEOUT_MS)
     if value in ("yes", "no"):
         row.locator(".check").set_checked(value == "yes")
     elif row.locator("select").count():

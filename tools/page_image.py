@@ -23,7 +23,7 @@ from playwright.sync_api import Page, sync_playwright
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
 SIZE = {"width": 1120, "height": 700}
 LOCALES = {"en": "en-US", "zh": "zh-CN"}
-PATIENCE = 60_000
+TIMEOUT_MS = 60_000
 """The timeout of an action, in milliseconds."""
 
 
@@ -46,10 +46,10 @@ def main() -> int:
             browser = playwright.chromium.launch(executable_path=chromium.find() or chromium.fetch(), args=list(FLAGS))
             page = browser.new_page(viewport=SIZE, locale=LOCALES[arguments.lang])  # type: ignore[arg-type]
             page.goto(url)
-            page.wait_for_function("window.linkwright?.ready === true", timeout=PATIENCE)
+            page.wait_for_function("window.linkwright?.ready === true", timeout=TIMEOUT_MS)
             operate(page, arguments.click)
             page.wait_for_timeout(arguments.wait * 1000)
-            shot = Image.open(io.BytesIO(page.screenshot(timeout=PATIENCE))).convert("RGB")
+            shot = Image.open(io.BytesIO(page.screenshot(timeout=TIMEOUT_MS))).convert("RGB")
             shot.save(arguments.image, quality=76, method=6)
             browser.close()
     finally:
@@ -61,7 +61,7 @@ def main() -> int:
 def operate(page: Page, texts: list[str]) -> None:
     """Click the element with each text, one after the other."""
     for text in texts:
-        page.get_by_text(text, exact=True).first.click(timeout=PATIENCE)
+        page.get_by_text(text, exact=True).first.click(timeout=TIMEOUT_MS)
 
 
 if __name__ == "__main__":

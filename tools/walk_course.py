@@ -27,7 +27,7 @@ from playwright.sync_api import Page, sync_playwright
 from linkwright.learning.course import Course, Step, find_course, load_course
 
 LOCALES = {"en": "en-US", "zh": "zh-CN"}
-PATIENCE = 150_000
+TIMEOUT_MS = 150_000
 """The timeout of a check, in milliseconds."""
 
 _CHECKED = """(address) => {
@@ -63,13 +63,13 @@ def walk(page: Page, course: Course, lessons: list[str], workspace: Path) -> int
 def change_language(page: Page) -> None:
     """Show the page in its other language."""
     page.get_by_role("button", name=re.compile("^(中文|EN)$")).click()
-    page.wait_for_function("() => window.linkwright?.panels.lesson.step", timeout=PATIENCE)
+    page.wait_for_function("() => window.linkwright?.panels.lesson.step", timeout=TIMEOUT_MS)
 
 
 def do_step(page: Page, step: Step, number: int, workspace: Path) -> tuple[str, str | None]:
     """Do one step of a lesson, and return the language of its text and the problem, or None."""
     language = open_step(page, step, number)
-    page.wait_for_function(_CHECKED, arg=step.address, timeout=PATIENCE)
+    page.wait_for_function(_CHECKED, arg=step.address, timeout=TIMEOUT_MS)
     if page.evaluate(_PASSED):
         return language, "the step is green before it is done"
     copy(step.solution, workspace)
@@ -77,10 +77,10 @@ def do_step(page: Page, step: Step, number: int, workspace: Path) -> tuple[str, 
     if answer.is_file():
         page.locator(".lesson-answer").fill(answer.read_text(encoding="utf-8").strip())
         page.locator(".lesson-answer").press("Enter")
-    deadline = time.monotonic() + PATIENCE / 1000
+    deadline = time.monotonic() + TIMEOUT_MS / 1000
     while time.monotonic() < deadline:
         page.wait_for_timeout(200)
-        page.wait_for_function(_CHECKED, arg=step.address, timeout=PATIENCE)
+        page.wait_for_function(_CHECKED, arg=step.address, timeout=TIMEOUT_MS)
         if page.evaluate(_PASSED):
             return language, None
     return language, f"the step is not green: {page.evaluate(_MESSAGES)}"
@@ -93,7 +93,7 @@ def open_step(page: Page, step: Step, number: int) -> str:
         page.locator(".lesson-head button").click()
     outline.locator("section").nth(number).locator(".outline-step").nth(step.lesson.steps.index(step)).click()
     language: str = page.evaluate("() => document.documentElement.lang.slice(0, 2)")
-    page.wait_for_function(_TITLE, arg=step.title.get(language), timeout=PATIENCE)
+    page.wait_for_function(_TITLE, arg=step.title.get(language), timeout=TIMEOUT_MS)
     return language
 
 

@@ -104,7 +104,7 @@ function start(app: HTMLElement): void {
     if (!document.hidden) connection.retryNow();
   });
   const session = new Session(connection);
-  languageChosen.on(() => session.memory.store());
+  languageChosen.on(() => session.pageMemory.store());
 
   const sheet = new KeySheet(session.tools);
   let modeler: Modeler | null = null;
@@ -120,7 +120,7 @@ function start(app: HTMLElement): void {
   const dockBox = h("main", { class: "dock" });
   app.append(dockBox);
   const [source, diagram] = [new SourcePanel(session), new DiagramPanel(session)];
-  const voice = new VoicePanel(session.voice, session.words);
+  const voice = new VoicePanel(session.voice, session.enrolledWords);
   const lesson = new LessonPanel(session.course);
   const terminal = new TerminalPanel(session.terminals, theme);
   const panels = [
@@ -137,7 +137,7 @@ function start(app: HTMLElement): void {
     source,
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
-    new WorldPanel(session.modeling, session.angles, commands),
+    new WorldPanel(session.modeling, session.angleUnits, commands),
     new ComparisonPanel(session, () => stage?.fit()),
     new EditingPanel(session),
     voice,
@@ -147,7 +147,7 @@ function start(app: HTMLElement): void {
     new ChecksPanel(session.course),
     ...createLivePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
-  preserveSearches(panels, session.memory);
+  preserveSearches(panels, session.pageMemory);
   const dock = new Dock(dockBox, panels, new Layouts(openBrowserStorage()), openBrowserStorage());
   followAvailability(dock, session);
   new FilePanels(connection, dock);
@@ -168,7 +168,7 @@ function start(app: HTMLElement): void {
     void source.edit(path);
   });
 
-  session.words.enrollRequested.on(() => {
+  session.enrolledWords.enrollRequested.on(() => {
     dock.open("voice");
     voice.enrollHere();
   });

@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { Backdrop } from "../src/scene/backdrop";
 import { ContactShadow } from "../src/scene/contact-shadow";
 import { createFadedColors } from "../src/scene/displays/grid-lines";
-import { samplePoints, samplesOf } from "../src/scene/robot/surface-samples";
+import { listFramingPoints, getSamples } from "../src/scene/robot/surface-samples";
 
 function boxAt(x: number, z: number): Mesh {
   const mesh = new Mesh(new BoxGeometry(1, 1, 1));
@@ -22,7 +22,7 @@ function shadeAt(shadow: ContactShadow, x: number, y: number): number {
 
 describe("sample points of a surface", () => {
   it("lie on all sides of it and represent its whole area", () => {
-    const { points, area } = samplesOf(new BoxGeometry(1, 2, 3));
+    const { points, area } = getSamples(new BoxGeometry(1, 2, 3));
     const half = [0.5, 1, 1.5];
     const sides = new Set<string>();
     for (let i = 0; i < points.length; i += 3) {
@@ -37,7 +37,7 @@ describe("sample points of a surface", () => {
   });
 
   it("follow the pose of the mesh", () => {
-    for (const [x] of samplePoints(boxAt(7, 0))) expect(Math.abs(x - 7)).toBeLessThanOrEqual(0.5 + 1e-5);
+    for (const [x] of listFramingPoints(boxAt(7, 0))) expect(Math.abs(x - 7)).toBeLessThanOrEqual(0.5 + 1e-5);
   });
 });
 

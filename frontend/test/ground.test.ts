@@ -1,7 +1,7 @@
 import { Box3, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { JointScene, LinkScene } from "../src/protocol";
-import { groundOf } from "../src/scene/robot/ground";
+import { computeGroundHeight } from "../src/scene/robot/ground";
 
 function createLink(name: string, parent_joint: string | null): LinkScene {
   return { name, frame: name, parent_joint, visuals: [], collisions: [], place: null, inertia: null };
@@ -19,7 +19,7 @@ const ROBOT = {
 
 function computeGround(base: [number, number] | null, part: [number, number]): number {
   const createBox = ([low, high]: [number, number]): Box3 => new Box3(new Vector3(-0.5, -0.5, low), new Vector3(0.5, 0.5, high));
-  return groundOf(ROBOT, new Map([["root", new Box3()], ["base", base ? createBox(base) : new Box3()], ["part", createBox(part)]]));
+  return computeGroundHeight(ROBOT, new Map([["root", new Box3()], ["base", base ? createBox(base) : new Box3()], ["part", createBox(part)]]));
 }
 
 describe("the ground of a robot", () => {
@@ -39,6 +39,6 @@ describe("the ground of a robot", () => {
   });
 
   it("is at zero if nothing is visible", () => {
-    expect(groundOf(ROBOT, new Map())).toBe(0);
+    expect(computeGroundHeight(ROBOT, new Map())).toBe(0);
   });
 });

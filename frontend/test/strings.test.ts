@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { DISPLAY_PATHS } from "../src/icons/displays";
+import { DISPLAY_ICON_PATHS } from "../src/icons/displays";
 import { en } from "../src/strings/en";
 import { zh } from "../src/strings/zh";
 
@@ -37,5 +37,5 @@ it("no text is empty, and Chinese ones are Chinese", () => {
 });
 
 it("every display with an icon has a description", () => {
-  expect(Object.keys(en.displays.about).sort()).toEqual(Object.keys(DISPLAY_PATHS).sort());
+  expect(Object.keys(en.displays.about).sort()).toEqual(Object.keys(DISPLAY_ICON_PATHS).sort());
 });

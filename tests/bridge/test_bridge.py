@@ -20,7 +20,7 @@ from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSPro
 from linkwright.graph.time.values import Duration
 from linkwright.messages import String, get_interface, type_hash
 from linkwright.wire.zenoh import attachment, qos_text
-from linkwright.wire.zenoh.session import configuration, open_with
+from linkwright.wire.zenoh.session import build_config, open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from tests.bridge.conftest import spin_all
@@ -379,7 +379,7 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
         domain, "ab", "0", "1", NodeIdentity("stranger", "/"), EndpointKind.PUBLISHER, "/odd",
         "strange_msgs::msg::dds_::Odd_", type_hash, qos_text.write(QoSProfile(10)),
     )  # fmt: skip
-    with open_with(configuration(read_settings())) as session:
+    with open_session(build_config(read_settings())) as session:
         announced = session.liveliness().declare_token(token.key)
         stranger = session.declare_publisher(token.data_key)
         spin_all(lambda: stranger.matching_status.matching and here.node.count_publishers("/odd"), here)

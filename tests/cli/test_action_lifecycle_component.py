@@ -248,7 +248,7 @@ def standalone(monkeypatch, deaf_to: set[int], status: int | None) -> list[_Cont
         return started[0]
 
     monkeypatch.setattr(asyncio, "create_subprocess_exec", start)
-    monkeypatch.setattr("linkwright.cli.component._ENDS_WITHIN", 0.01)
+    monkeypatch.setattr("linkwright.cli.component._EXIT_TIMEOUT_S", 0.01)
     return started
 
 

@@ -15,7 +15,7 @@ from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnostics
 from linkwright.diagnostics.render import MAX_PRINTED
 from linkwright.urdf import tree_text
-from linkwright.urdf.listing import DEEPEST
+from linkwright.urdf.listing import MAX_INDENTED_LEVELS
 from linkwright.urdf.model import Joint, Link, Robot
 from linkwright.xmltree import positions
 from tests.places import REPOSITORY
@@ -109,8 +109,8 @@ def test_tree_indentation_of_long_chain_is_limited() -> None:
     robot = Robot("r", "l0", {name: Link(name) for name in names}, joints, {})
     lines = tree_text(robot).splitlines()
     assert len(lines) == count + 2
-    assert lines[DEEPEST + 2] == f"{'    ' * DEEPEST}child(1):  l{DEEPEST}"
-    assert lines[-1] == f"{'    ' * DEEPEST}child(1):  l{count - 1}"
+    assert lines[MAX_INDENTED_LEVELS + 2] == f"{'    ' * MAX_INDENTED_LEVELS}child(1):  l{MAX_INDENTED_LEVELS}"
+    assert lines[-1] == f"{'    ' * MAX_INDENTED_LEVELS}child(1):  l{count - 1}"
 
 
 def test_many_findings_print_errors_and_count() -> None:

@@ -71,7 +71,7 @@ def test_unreachable_network_is_reported(monkeypatch, capsys):
 
 
 def test_greetings_are_counted_by_host_until_table_is_taken():
-    counts = Greetings("desk", published=2, sent=1)
+    counts = Greetings("desk", published_count=2, sent_count=1)
     for host in ("robot", "desk", "robot", "laptop"):
         counts.count_topic_greeting(greeting(host))
     counts.count_multicast_greeting("hello, it's me robot")

@@ -21,7 +21,7 @@ from pathlib import Path
 from tests.docs.pages import Block, blocks
 from tests.domains import own_domain
 
-PATIENCE = 90.0
+TIMEOUT_S = 90.0
 """The time limit in seconds, which is long enough for a busy machine."""
 
 _PROMPT = re.compile(r"\[status (\d+)\]\r?\n")
@@ -105,14 +105,14 @@ class Terminal:
     def wait_for(self, text: str) -> None:
         """Wait until the line has printed a text; fail if the line ends before."""
         with self._changed:
-            is_done = self._changed.wait_for(lambda: text in self.output or self.is_free, PATIENCE)
+            is_done = self._changed.wait_for(lambda: text in self.output or self.is_free, TIMEOUT_S)
         assert is_done, f"{self.line!r} prints no {text!r}:\n{self.output}"
         assert text in self.output, f"{self.line!r} ended before {text!r}:\n{self.output}"
 
     def status(self) -> int:
         """Wait for the end of the line, and return its exit status."""
         with self._changed:
-            has_ended = self._changed.wait_for(lambda: self.is_free, PATIENCE)
+            has_ended = self._changed.wait_for(lambda: self.is_free, TIMEOUT_S)
         assert has_ended, f"{self.line!r} has not ended:\n{self.output}"
         prompt = _PROMPT.search(self.output)
         assert prompt is not None
@@ -138,8 +138,8 @@ class Terminal:
         # ended, another error reports that.
         with suppress(OSError):
             os.write(self._terminal, b"\n")
-        self._shell.wait(PATIENCE)
-        self._reader_thread.join(PATIENCE)
+        self._shell.wait(TIMEOUT_S)
+        self._reader_thread.join(TIMEOUT_S)
         os.close(self._terminal)
 
 
@@ -211,7 +211,7 @@ class Reader:
 
     def _try_again(self, terminal: Terminal) -> bool:
         """Type a line again if it ended before the launched program was ready, and return whether that happened."""
-        is_repeated = terminal.is_free and self._page is not None and time.monotonic() < self._launch_time + PATIENCE
+        is_repeated = terminal.is_free and self._page is not None and time.monotonic() < self._launch_time + TIMEOUT_S
         if is_repeated:
             terminal.type(terminal.line)
         return is_repeated

@@ -72,10 +72,10 @@ def test_fixed_range_scales_values():
 def test_range_is_median_of_last_images():
     ranges = RangeFinder()
     ranges.window = 3
-    largest = [ranges.range_of(np.array([0.0, value])).white for value in (10.0, 20.0, 1000.0, 20.0)]
+    largest = [ranges.update_range(np.array([0.0, value])).white for value in (10.0, 20.0, 1000.0, 20.0)]
     assert largest == [10.0, 20.0, 20.0, 20.0]
     ranges.window = 1
-    assert ranges.range_of(np.array([0.0, 5.0])).white == 5.0
+    assert ranges.update_range(np.array([0.0, 5.0])).white == 5.0
 
 
 def test_only_images_above_eight_bits_have_range():

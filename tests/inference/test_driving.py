@@ -32,7 +32,7 @@ def standing(title: str) -> tuple[Simulation, Drive]:
     assert inference.drive is not None
     simulation = make_simulation(GROUND)
     model = model_from_robot(robot, lump_fixed_joints=True).model
-    simulation.spawn(model, "r", (0.0, 0.0, -inference.ground, 0.0, 0.0, 0.0, 1.0))
+    simulation.spawn(model, "r", (0.0, 0.0, -inference.ground_z, 0.0, 0.0, 0.0, 1.0))
     return simulation, inference.drive
 
 

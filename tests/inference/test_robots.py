@@ -37,7 +37,7 @@ def summary_of(inference: Inference) -> str:
     lines = ["none"]
     if drive is not None:
         lines = [f"{drive.kind} {drive.separation:.3g} {2 * drive.radius:.3g}"]
-    lines[0] += f" ground {round(inference.ground, 4) + 0.0:g} base {inference.base_frame}"
+    lines[0] += f" ground {round(inference.ground_z, 4) + 0.0:g} base {inference.base_frame}"
     if drive is not None and drive.left:
         left, right = (" ".join(wheel.joint for wheel in side) for side in (drive.left, drive.right))
         lines.append(f"left {left}; right {right}")

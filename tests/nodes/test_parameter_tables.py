@@ -40,8 +40,8 @@ async def test_declared_table_is_read_again_with_changes(graph: Graph) -> None:
 
 
 async def test_custom_defaults_replace_table_defaults(graph: Graph) -> None:
-    usual = Settings(frame="odom", places=("a", "b"))
-    assert declare_table(graph.create_node("planner"), Settings, usual=usual) == usual
+    defaults = Settings(frame="odom", places=("a", "b"))
+    assert declare_table(graph.create_node("planner"), Settings, defaults=defaults) == defaults
 
 
 async def test_value_of_wrong_type_is_rejected(graph: Graph) -> None:

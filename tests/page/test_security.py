@@ -344,7 +344,7 @@ async def test_web_sockets_beyond_maximum_are_rejected(served):
 
 
 async def test_incomplete_request_times_out(served, monkeypatch):
-    monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.2)
+    monkeypatch.setattr("linkwright.page.access.FIRST_REQUEST_TIMEOUT_S", 0.2)
     address = urlsplit(served.viewer.url)
     for text in (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: "):
         reader, writer = await asyncio.open_connection(address.hostname, address.port)
@@ -358,7 +358,7 @@ async def test_incomplete_request_times_out(served, monkeypatch):
 
 
 async def test_connected_page_does_not_time_out(served, monkeypatch):
-    monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.1)
+    monkeypatch.setattr("linkwright.page.access.FIRST_REQUEST_TIMEOUT_S", 0.1)
     async with page(served.viewer) as client:
         await client.opened()
         address = urlsplit(served.viewer.url)
@@ -375,7 +375,8 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
     server = served.viewer._server.web
     monkeypatch.setattr(server, "_page_folder", tmp_path)
-    monkeypatch.setattr("linkwright.page.server._HEARTBEAT", 600.0)  # the client answers heartbeats only while it reads
+    # The client answers heartbeats only while it reads.
+    monkeypatch.setattr("linkwright.page.server._HEARTBEAT_PERIOD_S", 600.0)
     address = urlsplit(served.viewer.url)
     asking = f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode()
     async with page(served.viewer) as client:
@@ -402,7 +403,7 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
 
 async def test_slow_download_of_page_does_not_time_out(served, tmp_path, monkeypatch):
     """These files are fetched without the token, and a slow line takes longer than the limit for other clients."""
-    monkeypatch.setattr("linkwright.page.access.PATIENCE", 0.1)
+    monkeypatch.setattr("linkwright.page.access.FIRST_REQUEST_TIMEOUT_S", 0.1)
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (16 << 20))
     monkeypatch.setattr(served.viewer._server.web, "_page_folder", tmp_path)

@@ -38,8 +38,8 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture(autouse=True)
 def short_time_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the time limits to seconds."""
-    monkeypatch.setattr(uploads, "PATIENCE", SECONDS)
-    monkeypatch.setattr(guests, "PATIENCE", SECONDS)
+    monkeypatch.setattr(uploads, "IDLE_TIMEOUT_S", SECONDS)
+    monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", SECONDS)
 
 
 class Sender:
@@ -284,7 +284,7 @@ async def test_recording_is_closed_after_its_last_page(tmp_path: Path, scratch: 
 
 @skipping
 async def test_open_recordings_are_limited_and_removed_at_exit(tmp_path: Path, scratch: Path, monkeypatch):
-    monkeypatch.setattr(guests, "PATIENCE", 60.0)
+    monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", 60.0)
     files = contents(recorded(tmp_path))
     async with upload_server() as (_, sender):
         for _ in range(4):

@@ -57,7 +57,7 @@ TOOL = ElementRule(
         AttributeRule("kg", NUMBER, "how heavy it is", "kg", since=(1, 1), field="weight"),
         AttributeRule("length", NUMBER, "how long it is", "m", default="1", later_default=((2, 0), 3.0)),
     ),
-    many=True,
+    is_repeated=True,
     make=Tool,
     field="tools",
 )
@@ -86,8 +86,8 @@ SHED = ElementRule(
         PLACE,
     ),
     make=Shed,
-    located=True,
-    nests=True,
+    passes_element=True,
+    is_recursive=True,
 )
 
 

@@ -55,7 +55,7 @@ def elements(draw, rule: ElementRule, sloppy: bool) -> Element:
     if rule.tag == "geometry":
         children = [draw(st.sampled_from(children))]
     for child in children:
-        count = draw(st.integers(0, 3)) if child.many else draw(st.integers(0, 1 if sloppy else 9)) > 0
+        count = draw(st.integers(0, 3)) if child.is_repeated else draw(st.integers(0, 1 if sloppy else 9)) > 0
         element.children += [draw(elements(child, sloppy)) for _ in range(count)]
     if sloppy and not draw(st.integers(0, 9)):
         element.children.append(draw(elements(draw(st.sampled_from(OTHERS)), sloppy)))

@@ -70,7 +70,7 @@ class FastPeer:
         client, _ = values.read_related_identity(sample.inline, sample.order)
         for guid, answer in ((os.urandom(16), "for another client"), (client, text)):
             reply = serialize(SetCameraInfo.Response(success=True, status_message=answer))
-            self.participant.write(self.replies, reply, inline=values.related_identity(guid, sample.number))
+            self.participant.write(self.replies, reply, inline=values.related_identity(guid, sample.sequence_number))
 
     def _on_reply(self, sample: Data) -> None:
         guid, number = values.read_related_identity(sample.inline, sample.order)

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import get_message
-from linkwright.wire.dds.backlog import PATIENCE, Backlog
+from linkwright.wire.dds.backlog import ACKNOWLEDGMENT_TIMEOUT_S, Backlog
 
 UInt8MultiArray = get_message("std_msgs/msg/UInt8MultiArray")
 SMALL, LARGE = 100, 1000
@@ -74,7 +74,7 @@ def test_samples_are_not_queued_without_fast_dds_readers():
 def test_unresponsive_reader_delays_topic_once():
     writer = Writer()
     assert writer.send(1, 2, 3)
-    writer.now = PATIENCE
+    writer.now = ACKNOWLEDGMENT_TIMEOUT_S
     assert not writer.backlog.write_queued()
     assert not writer.send(4, 5)
     assert writer.written == [1, 2, 3, 4, 5]

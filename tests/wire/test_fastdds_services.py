@@ -112,7 +112,7 @@ class _Service:
         self.requests = []
 
     def receive(self, request, _reply, request_id):
-        self.requests.append((request.camera_info.distortion_model, request_id.number))
+        self.requests.append((request.camera_info.distortion_model, request_id.sequence_number))
 
 
 def test_early_requests_get_numbers_before_first_received(monkeypatch):

@@ -74,7 +74,7 @@ def test_paced_sample_has_guid_of_writer():
     pacer.stop(0.0)
     reader.close()
     fragments = [text for packet in packets for text in parse(packet, READER[:12])]
-    assert [(text.writer, text.number, text.first, text.size) for text in fragments] == [
+    assert [(text.writer, text.sequence_number, text.first, text.size) for text in fragments] == [
         (WRITER, 7, number, len(LARGE)) for number in (1, 2, 3)
     ]
     assert {text.time for text in fragments} == {5_000_000_000}
@@ -186,7 +186,7 @@ def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
         assert publisher.wait_for_all_acked()
         peer.spin_until(lambda: len(messages) == 3)
         assert messages == images
-    assert [(text.number, text.first) for text in fragments] == [(1, 1), (1, 2), (3, 1), (3, 2)]
+    assert [(text.sequence_number, text.first) for text in fragments] == [(1, 1), (1, 2), (3, 1), (3, 2)]
     assert {text.writer for text in fragments} == {publisher.gid}
     paced = b"".join(text.payload for text in fragments[:2])
     assert deserialize(paced, Image) == images[0]

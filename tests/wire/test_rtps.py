@@ -38,7 +38,7 @@ def test_fast_dds_request_is_parsed():
     )
     (parsed,) = parse(packet[:20] + packet[20:], OURS)
     assert isinstance(parsed, Data)
-    assert (parsed.writer, parsed.reader, parsed.number) == (THEIRS + b"\0\0\2\3", b"\0\0\1\4", 42)
+    assert (parsed.writer, parsed.reader, parsed.sequence_number) == (THEIRS + b"\0\0\2\3", b"\0\0\1\4", 42)
     assert parsed.time == 5_500_000_000
     assert parsed.payload == bytes.fromhex("0001000001000000")
     assert values.read_related_identity(parsed.inline, parsed.order) == (THEIRS + b"\0\0\3\4", values.NO_NUMBER)
@@ -117,7 +117,7 @@ class _LossyLink:
             self.reader.on_gap(submessage)
             return []
         sample = self.reader.on_data(submessage)
-        self.received += [] if sample is None else [(sample.number, sample.payload)]
+        self.received += [] if sample is None else [(sample.sequence_number, sample.payload)]
         return []
 
     def settle(self):

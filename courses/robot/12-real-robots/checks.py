@@ -428,20 +428,20 @@ def launch_has_defaults(work):
 )
 def camera_has_namespace(work):
     path = work.package(BRINGUP).file(f"launch/{LAUNCH}")
-    python = read_launch_file(SourceText(str(path), path.read_text(encoding="utf-8")), path.name).python
-    if python is None or any(python.calls("PushRosNamespace", "PushROSNamespace")):
+    python_file = read_launch_file(SourceText(str(path), path.read_text(encoding="utf-8")), path.name).python_file
+    if python_file is None or any(python_file.calls("PushRosNamespace", "PushROSNamespace")):
         return
-    for call in python.calls("Node"):
-        if python.text(argument_of(call, "package")) != "usb_cam":
+    for call in python_file.calls("Node"):
+        if python_file.text(argument_of(call, "package")) != "usb_cam":
             continue
-        executable = python.text(argument_of(call, "executable"))
+        executable = python_file.text(argument_of(call, "executable"))
         if executable not in (None, "usb_cam_node_exe"):
             raise NotYet(
                 en=f"The executable of usb_cam is '{executable}', but should be usb_cam_node_exe.",
                 zh=f"usb_cam 的可执行文件是“{executable}”，应当是 usb_cam_node_exe。",
             )
         given = {keyword.arg for keyword in call.keywords}
-        namespace = python.text(argument_of(call, "namespace"))
+        namespace = python_file.text(argument_of(call, "namespace"))
         if namespace is None and given & {"namespace", "remappings", None}:
             continue  # a value that is known only at run time, or the topics themselves
         if (namespace or "").strip("/") != "camera":

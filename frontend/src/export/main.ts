@@ -35,10 +35,10 @@ function start(app: HTMLElement, recordedElement: HTMLElement): void {
   const { display } = recording;
   const connection = new RecordedConnection(recording);
   const session = new Session(connection);
-  languageChosen.on(() => session.memory.store());
+  languageChosen.on(() => session.pageMemory.store());
   connection.open();
   const { joints } = session;
-  session.memory.preserve("positions", () => joints.positions, (positions) => joints.move(positions));
+  session.pageMemory.preserve("positions", () => joints.positions, (positions) => joints.move(positions));
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   const column = new CardColumn();

@@ -103,16 +103,16 @@ export class Sidebar {
   }
 
   private createJoints(): HTMLElement {
-    const { joints, angles } = this.session;
+    const { joints, angleUnits } = this.session;
     const texts = strings.joints;
     const rows = (joints.controls ?? []).map(
-      (joint) => new JointRow(joint, angles, (position) => joints.move({ [joint.name]: position })),
+      (joint) => new JointRow(joint, angleUnits, (position) => joints.move({ [joint.name]: position })),
     );
     const update = (): void => {
       for (const row of rows) row.setPosition(joints.positions[row.joint.name] ?? 0);
     };
     joints.positionsChanged.on(update);
-    angles.changed.on(() => rows.forEach((row) => row.showUnit()));
+    angleUnits.changed.on(() => rows.forEach((row) => row.showUnit()));
     update();
     const bar = createJointBar(this.session);
     const emptyHint = h("p", { class: "empty" }, texts.none);

@@ -1,5 +1,5 @@
 /** The icon of each display class, by the class's name without its package. */
-export const DISPLAY_PATHS = {
+export const DISPLAY_ICON_PATHS = {
   AccelStamped: "M2 13.5L9 6.5M6 6.3h3.2v3.2M8.5 11.5l5-5M10.6 3.2h3.2v3.2",
   Axes: "M6 10V2.5M4.3 4.2L6 2.5l1.7 1.7M6 10h7.5M11.8 8.3l1.7 1.7-1.7 1.7M6 10l-3.5 3.5M2.5 11.2v2.3h2.3",
   Camera: "M1.8 4.5h8.4v7H1.8zM10.2 7.2l4-2.2v6l-4-2.2M4 9.5l2-2.3 1.6 1.6",
@@ -48,4 +48,4 @@ export const DISPLAY_PATHS = {
   Wrench: "M13.8 4.2L11.6 6.4 9.6 4.4l2.2-2.2a3.6 3.6 0 00-4.7 4.7L2 12l2 2 5.1-5.1a3.6 3.6 0 004.7-4.7z",
 } as const;
 
-export type DisplayIcon = keyof typeof DISPLAY_PATHS;
+export type DisplayIcon = keyof typeof DISPLAY_ICON_PATHS;

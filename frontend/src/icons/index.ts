@@ -1,10 +1,10 @@
-import { DISPLAY_PATHS, type DisplayIcon } from "./displays";
+import { DISPLAY_ICON_PATHS, type DisplayIcon } from "./displays";
 import { MODELING_PATHS } from "./modeling";
 import { SHELL_PATHS } from "./shell";
 
 /** Our own icons, 16 x 16, drawn with lines in the current text color. */
 const PATHS = {
-  ...DISPLAY_PATHS,
+  ...DISPLAY_ICON_PATHS,
   ...SHELL_PATHS,
   ...MODELING_PATHS,
   chevron: "M6 4l4 4-4 4",
@@ -95,7 +95,7 @@ export function icon(name: IconName, className = ""): SVGSVGElement {
 /** Returns the icon of a display class, such as `rviz_default_plugins/Grid`. */
 export function iconNameOf(cls: string): IconName {
   const name = cls.split("/").pop() ?? cls;
-  return name in DISPLAY_PATHS ? (name as DisplayIcon) : "unknown";
+  return name in DISPLAY_ICON_PATHS ? (name as DisplayIcon) : "unknown";
 }
 
 /** The icon of each status level and severity. */

@@ -4,7 +4,7 @@ import type { Theme } from "../state/theme";
 /**
  * The number of squares along each side; colors are computed at their corners and interpolated, which is not visible.
  */
-const SQUARES = 24;
+const SQUARES_PER_SIDE = 24;
 /** The render order of the backdrop: drawn before everything else. */
 const RENDER_ORDER = -1000;
 
@@ -55,7 +55,7 @@ export class Backdrop {
 
   constructor() {
     const style = { vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, depthWrite: false };
-    this.root = new Mesh(new PlaneGeometry(2, 2, SQUARES, SQUARES), new ShaderMaterial({ ...style, uniforms: this.uniforms }));
+    this.root = new Mesh(new PlaneGeometry(2, 2, SQUARES_PER_SIDE, SQUARES_PER_SIDE), new ShaderMaterial({ ...style, uniforms: this.uniforms }));
     this.root.renderOrder = RENDER_ORDER;
     this.root.frustumCulled = false;
     this.root.visible = false;

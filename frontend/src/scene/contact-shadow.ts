@@ -1,8 +1,8 @@
 import { Box3, DataTexture, Group, LinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from "three";
-import { samplesOf } from "./robot/surface-samples";
+import { getSamples } from "./robot/surface-samples";
 
 /** Texels along each side of the shadow's image. */
-const TEXELS = 96;
+const TEXELS_PER_SIDE = 96;
 /** The width of the ground that the image covers, in widths of the robot. */
 const GROUND_WIDTHS = 1.7;
 /** The maximum darkness. */
@@ -29,10 +29,10 @@ export class ContactShadow {
   readonly root = new Group();
   /** The plane that shows the image of the shadow. */
   readonly ground: Mesh<PlaneGeometry, MeshBasicMaterial>;
-  private readonly pixels = new Uint8Array(4 * TEXELS * TEXELS);
-  private readonly texture = new DataTexture(this.pixels, TEXELS, TEXELS);
-  private shade = new Float32Array(TEXELS * TEXELS);
-  private spare = new Float32Array(TEXELS * TEXELS);
+  private readonly pixels = new Uint8Array(4 * TEXELS_PER_SIDE * TEXELS_PER_SIDE);
+  private readonly texture = new DataTexture(this.pixels, TEXELS_PER_SIDE, TEXELS_PER_SIDE);
+  private shade = new Float32Array(TEXELS_PER_SIDE * TEXELS_PER_SIDE);
+  private spare = new Float32Array(TEXELS_PER_SIDE * TEXELS_PER_SIDE);
   private lastKey = NaN;
 
   constructor() {
@@ -67,22 +67,22 @@ export class ContactShadow {
   }
 
   private add({ geometry, matrixWorld }: Mesh, center: Vector3, width: number, height: number, size: number): void {
-    const { points, area } = samplesOf(geometry);
+    const { points, area } = getSamples(geometry);
     const growth = Math.cbrt(Math.abs(matrixWorld.determinant())) ** 2;
-    const texels = (area * growth) / (width / TEXELS) ** 2;
+    const texels = (area * growth) / (width / TEXELS_PER_SIDE) ** 2;
     for (let i = 0; i < points.length; i += 3) {
       position.fromArray(points, i).applyMatrix4(matrixWorld);
       const heightAbove = Math.max(0, position.z - height) / size;
-      const x = Math.floor(((position.x - center.x) / width + 0.5) * TEXELS);
-      const y = Math.floor(((position.y - center.y) / width + 0.5) * TEXELS);
-      const texel = y * TEXELS + x;
+      const x = Math.floor(((position.x - center.x) / width + 0.5) * TEXELS_PER_SIDE);
+      const y = Math.floor(((position.y - center.y) / width + 0.5) * TEXELS_PER_SIDE);
+      const texel = y * TEXELS_PER_SIDE + x;
       this.shade[texel] = (this.shade[texel] ?? 0) + texels * (Math.exp(-heightAbove / NEAR) + FAR_WEIGHT * Math.exp(-heightAbove / FAR));
     }
   }
 
   /** Replaces each texel by the mean of a square around it. */
   private blur(): void {
-    for (const step of [1, TEXELS]) {
+    for (const step of [1, TEXELS_PER_SIDE]) {
       const [source, target] = [this.shade, this.spare];
       for (let i = 0; i < source.length; i++) {
         let sum = 0;

@@ -7,11 +7,11 @@ const IDLE_AFTER_MS = 600;
 /** A frame this late was delayed by the frames before it: most of a refresh interval of the screen. */
 const LATE_MS = 12;
 /** This many more late frames than timely ones make moving frames coarser. */
-const LATE_FRAMES = 4;
+const LATE_FRAME_COUNT = 4;
 /** The first frames are not judged: they wait for shaders to compile. */
-const FIRST_FRAMES = 6;
+const FIRST_FRAME_COUNT = 6;
 /** This many timely frames in a row make moving frames finer again; the number doubles each time. */
-const TIMELY_FRAMES = 300;
+const TIMELY_FRAME_COUNT = 300;
 /** After a coarse frame, a fine one is drawn once nothing has changed for this time. */
 const STILL_AFTER_MS = 250;
 
@@ -56,7 +56,7 @@ export class FrameLoop {
   private dueMs = -Infinity;
   private lateness = 0;
   private timelyCount = 0;
-  private patience = TIMELY_FRAMES;
+  private requiredTimelyCount = TIMELY_FRAME_COUNT;
   /** The index in `DETAILS` for moving frames. */
   private detailLevel = 0;
   private wasLastFine = false;
@@ -139,7 +139,7 @@ export class FrameLoop {
     this.scheduled.clear();
     for (const show of besides) show();
     if (this.requestedAt === null || this.isHeld) return;
-    if (this.frameCount >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
+    if (this.frameCount >= FIRST_FRAME_COUNT) this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
     // The first frame must appear quickly.
     const level = Math.max(this.detailLevel, this.frameCount > 0 ? 0 : 1);
@@ -153,9 +153,9 @@ export class FrameLoop {
     this.judged.emit(isLate);
     this.lateness = Math.max(0, this.lateness + (isLate ? 1 : -1));
     this.timelyCount = isLate ? 0 : this.timelyCount + 1;
-    if (this.lateness >= LATE_FRAMES) this.changeLevel(1);
-    else if (this.timelyCount >= this.patience && this.detailLevel > 0) {
-      this.patience *= 2;
+    if (this.lateness >= LATE_FRAME_COUNT) this.changeLevel(1);
+    else if (this.timelyCount >= this.requiredTimelyCount && this.detailLevel > 0) {
+      this.requiredTimelyCount *= 2;
       this.changeLevel(-1);
     }
   }

@@ -8,8 +8,8 @@ import type { ToolEvent } from "./tools/tool";
 
 /** The range of the search on each side of the previous angle, rad, and its number of steps. */
 const SEARCH_RANGE = Math.PI / 2;
-const STEPS = 48;
-const REFINEMENTS = 24;
+const STEP_COUNT = 48;
+const REFINEMENT_COUNT = 24;
 /** The tools whose left button may also drag links. */
 const TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
 
@@ -146,12 +146,12 @@ export function turnAngle(ray: Ray, axis: Vector3, origin: Vector3, grabPoint: V
     ray.distanceSqToPoint(point.copy(arm).applyAxisAngle(axis, angle).add(origin));
   let bestAngle = startAngle;
   let minDistance = distanceAt(startAngle);
-  for (let i = -STEPS; i <= STEPS; i++) {
-    const angle = startAngle + (SEARCH_RANGE * i) / STEPS;
+  for (let i = -STEP_COUNT; i <= STEP_COUNT; i++) {
+    const angle = startAngle + (SEARCH_RANGE * i) / STEP_COUNT;
     const angleDistance = distanceAt(angle);
     if (angleDistance < minDistance) [bestAngle, minDistance] = [angle, angleDistance];
   }
-  for (let i = 0, step = SEARCH_RANGE / STEPS; i < REFINEMENTS; i++, step /= 2) {
+  for (let i = 0, step = SEARCH_RANGE / STEP_COUNT; i < REFINEMENT_COUNT; i++, step /= 2) {
     for (const angle of [bestAngle - step, bestAngle + step]) {
       const angleDistance = distanceAt(angle);
       if (angleDistance < minDistance) [bestAngle, minDistance] = [angle, angleDistance];

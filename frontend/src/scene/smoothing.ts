@@ -1,7 +1,7 @@
 import { ShaderMaterial, Vector2, WebGLRenderTarget, type WebGLRenderer } from "three";
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 
-const SAMPLES = 4;
+const SAMPLE_COUNT = 4;
 const FRAGMENT = /* glsl */ `
   uniform sampler2D source;
   varying vec2 vUv;
@@ -10,7 +10,7 @@ const FRAGMENT = /* glsl */ `
 
 /** Antialiasing that can be switched off for single frames, unlike the browser's own. */
 export class Smoothing {
-  private readonly target = new WebGLRenderTarget(1, 1, { samples: SAMPLES });
+  private readonly target = new WebGLRenderTarget(1, 1, { samples: SAMPLE_COUNT });
   private readonly quad = new ScreenQuad(
     new ShaderMaterial({
       vertexShader: SCREEN_VERTEX,

@@ -7,7 +7,7 @@ import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";
 import { DRAWINGS } from "./displays/registry";
-import { samplePoints } from "./robot/surface-samples";
+import { listFramingPoints } from "./robot/surface-samples";
 import { RobotModelDrawing } from "./displays/robot-model";
 import { WorldDrawing } from "./displays/world";
 import { Backdrop } from "./backdrop";
@@ -186,7 +186,7 @@ export class Stage {
       if (drawing?.display.isEnabled && !drawing.drawing.isElsewhere) loop.invalidate();
     });
     session.data.removed.on(({ display, key }) => {
-      this.drawings.get(display)?.drawing.onDataForgotten?.(key);
+      this.drawings.get(display)?.drawing.onDataRemoved?.(key);
       loop.invalidate();
     });
     frames.tableChanged.on(invalidate);
@@ -337,7 +337,7 @@ export class Stage {
   /** Returns the bounding box of all robots, with sample points of their surfaces. */
   private computeSampledRobotBounds(): Bounds | null {
     const box = this.computeRobotBounds();
-    const points = this.listRobots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => samplePoints(mesh)));
+    const points = this.listRobots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => listFramingPoints(mesh)));
     return box && points.length > 0 ? { ...box, points } : box;
   }
 

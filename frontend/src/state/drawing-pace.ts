@@ -1,7 +1,7 @@
 import { Signal } from "../signal";
 
 /** The number of recent frames that are judged. */
-const JUDGED_FRAMES = 60;
+const JUDGED_FRAME_COUNT = 60;
 /** Drawing is slow from this number of late frames on, and fast again from this number down. */
 const SLOW_FROM = 45;
 const FAST_UP_TO = 15;
@@ -22,7 +22,7 @@ export class DrawingPace {
   /** Counts a frame; `isLate` if it was drawn long after it was due, because the frames before took too long. */
   countFrame(isLate: boolean): void {
     this.lateness.push(isLate);
-    if (this.lateness.length > JUDGED_FRAMES) this.lateness.shift();
+    if (this.lateness.length > JUDGED_FRAME_COUNT) this.lateness.shift();
     const count = this.lateness.filter(Boolean).length;
     const isSlow = this.wasSlow ? count > FAST_UP_TO : count >= SLOW_FROM;
     if (isSlow === this.wasSlow) return;

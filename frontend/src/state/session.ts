@@ -69,16 +69,16 @@ export class Session {
   readonly focus = new ElementFocus(this.selection, this.robots);
   readonly inspect = new InspectState(openBrowserStorage());
   readonly poses = new PoseStore(openBrowserStorage());
-  readonly angles = new AngleUnits(openBrowserStorage());
-  readonly memory = new PageMemory(openBrowserStorage("sessionStorage"));
+  readonly angleUnits = new AngleUnits(openBrowserStorage());
+  readonly pageMemory = new PageMemory(openBrowserStorage("sessionStorage"));
   readonly monitor: MonitorState;
   readonly voice: VoiceState;
-  readonly words: WordsState;
+  readonly enrolledWords: WordsState;
   readonly textEditor: TextEditorLink;
   readonly terminals: TerminalsState;
   readonly course: CourseState;
   diagnostics: readonly DiagnosticItem[] = [];
-  private program: Hello | null = null;
+  private lastHello: Hello | null = null;
 
   constructor(readonly connection: Connection) {
     this.configuration = new ConfigurationState(connection);
@@ -98,7 +98,7 @@ export class Session {
     this.description = new DescriptionState(connection);
     this.monitor = new MonitorState(connection, openBrowserStorage());
     this.voice = new VoiceState(connection, openBrowserStorage());
-    this.words = new WordsState(connection, this.voice);
+    this.enrolledWords = new WordsState(connection, this.voice);
     this.textEditor = new TextEditorLink(connection, this.focus);
     this.terminals = new TerminalsState(connection);
     this.course = new CourseState(connection);
@@ -108,13 +108,13 @@ export class Session {
     };
     this.displays.treeChanged.on(followFixedFrame);
     this.displays.valueChanged.on(followFixedFrame);
-    this.registerState();
+    this.registerPreservedState();
   }
 
   /** Registers the state that only this page has, to preserve it across a reload. */
-  private registerState(): void {
-    const { memory } = this;
-    memory.preserve("program", () => this.program, (program) => (this.program = program));
+  private registerPreservedState(): void {
+    const memory = this.pageMemory;
+    memory.preserve("program", () => this.lastHello, (hello) => (this.lastHello = hello));
     for (const part of [this.view, this.selection, this.focus, this.tools, this.joints]) part.preserveIn(memory);
   }
 
@@ -135,8 +135,8 @@ export class Session {
 
   /** Keeps joint positions and camera if the program was restarted and shows the same content. */
   private onHello(hello: Hello): void {
-    const previous = this.program;
-    this.program = hello;
+    const previous = this.lastHello;
+    this.lastHello = hello;
     if (previous !== null && previous.run !== hello.run) {
       const isSame = previous.title === hello.title;
       this.view.onProgramRestarted(isSame);

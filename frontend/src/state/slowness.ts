@@ -9,7 +9,7 @@ export type SlowCause = "page" | "program" | "line";
 /** The interval at which the delay of the page's timers is measured, ms. */
 const INTERVAL_MS = 50;
 /** The number of measurements that are averaged. */
-const AVERAGED = 40;
+const AVERAGED_COUNT = 40;
 /** The page counts as late from the first share of time on, until it falls below the second. */
 const LATE_SHARE = 0.3;
 const TIMELY_SHARE = 0.15;
@@ -61,7 +61,7 @@ export class Slowness {
 
   private addMeasurement(delay: number): void {
     this.delays.push(delay);
-    if (this.delays.length > AVERAGED) this.delays.shift();
+    if (this.delays.length > AVERAGED_COUNT) this.delays.shift();
     const sum = this.delays.reduce((total, delay) => total + delay, 0);
     const share = sum / (sum + this.delays.length * INTERVAL_MS);
     const isLate = this.isPageLate ? share > TIMELY_SHARE : share >= LATE_SHARE;

@@ -192,14 +192,14 @@ class _Scan:
         """Add a schema or channel, unless its number is already in use."""
         records = self.schemas if kind == _SCHEMA else self.channels
         readable = readable_schema(content) if kind == _SCHEMA else content
-        records.setdefault(_UINT16.unpack_from(content)[0], _record(kind, readable))
+        records.setdefault(_UINT16.unpack_from(content)[0], _pack_record(kind, readable))
 
 
 def _make_summary(scan: _Scan, file: BinaryIO) -> bytes:
     """Return the bytes that must follow the complete records of a file."""
     if scan.has_messages_outside_chunks or not scan.chunks:
         # The library reads such a file sequentially, with or without a summary.
-        return _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(FOOTER_BODY.size)) + MAGIC
+        return _pack_record(_DATA_END, bytes(4)) + _pack_record(_FOOTER, bytes(FOOTER_BODY.size)) + MAGIC
     message_indexes = bytearray()
     for chunk in scan.chunks:
         if not chunk.indexes or not scan.channels.keys() >= chunk.indexes.keys():
@@ -253,7 +253,7 @@ def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, message_indexes: byt
     file.seek(chunk.offset + chunk.length - chunk.compressed_size)
     data = decompress(file.read(chunk.compressed_size), chunk.compression.decode(), chunk.size, 0)
     entries: dict[int, list[bytes]] = defaultdict(list)
-    for record_type, offset, length in _records(data):
+    for record_type, offset, length in _read_records(data):
         content = data[offset + HEAD.size : offset + HEAD.size + length]
         if record_type in (_SCHEMA, _CHANNEL):
             scan.declare(record_type, content)
@@ -265,11 +265,11 @@ def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, message_indexes: byt
     for channel, packed in entries.items():
         chunk.indexes[channel], chunk.counts[channel] = scan.end + len(message_indexes), len(packed)
         index = b"".join(packed)
-        message_indexes += _record(_MESSAGE_INDEX, _UINT16.pack(channel) + _UINT32.pack(len(index)) + index)
+        message_indexes += _pack_record(_MESSAGE_INDEX, _UINT16.pack(channel) + _UINT32.pack(len(index)) + index)
     chunk.indexes_end = scan.end + len(message_indexes)
 
 
-def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
+def _read_records(data: bytes) -> Iterator[tuple[int, int, int]]:
     """Yield the type, position and content length of each record in a decompressed chunk."""
     offset = 0
     while offset + HEAD.size <= len(data):
@@ -280,7 +280,7 @@ def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
 
 def _make_tail(scan: _Scan, message_indexes: bytes) -> bytes:
     """Return the created message indexes, the end of the data section, and the summary."""
-    data_end = message_indexes + _record(_DATA_END, bytes(4))
+    data_end = message_indexes + _pack_record(_DATA_END, bytes(4))
     chunks = [chunk for chunk in scan.chunks if chunk.indexes]
     totals: dict[int, int] = defaultdict(int)
     for channel, count in chain.from_iterable(chunk.counts.items() for chunk in chunks):
@@ -300,11 +300,11 @@ def _make_tail(scan: _Scan, message_indexes: bytes) -> bytes:
         (
             *scan.schemas.values(),
             *scan.channels.values(),
-            *(_record(_CHUNK_INDEX, _chunk_index(chunk)) for chunk in chunks),
-            _record(_STATISTICS, statistics + _UINT32.pack(len(counts)) + counts),
+            *(_pack_record(_CHUNK_INDEX, _chunk_index(chunk)) for chunk in chunks),
+            _pack_record(_STATISTICS, statistics + _UINT32.pack(len(counts)) + counts),
         )
     )
-    footer = _record(_FOOTER, FOOTER_BODY.pack(scan.end + len(data_end), 0, 0))
+    footer = _pack_record(_FOOTER, FOOTER_BODY.pack(scan.end + len(data_end), 0, 0))
     return data_end + summary + footer + MAGIC
 
 
@@ -324,5 +324,5 @@ def _chunk_index(chunk: _Chunk) -> bytes:
     )
 
 
-def _record(kind: int, content: bytes) -> bytes:
+def _pack_record(kind: int, content: bytes) -> bytes:
     return HEAD.pack(kind, len(content)) + content

@@ -17,7 +17,7 @@ from linkwright.wire.dds.settings import read_settings as read_dds_settings
 from linkwright.wire.unsupported_settings import refuse_enforced_security
 from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
 
-_JOINED_WITHIN = 10.0
+_JOIN_TIMEOUT_S = 10.0
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Network:
         graph.attach(transport)
         network = BridgedNetwork(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
         try:
-            await network.join(_JOINED_WITHIN)
+            await network.join(_JOIN_TIMEOUT_S)
         except BaseException:
             await graph.close()
             raise

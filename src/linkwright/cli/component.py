@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_START_TIMEOUT = 10.0
-_ENDS_WITHIN = 5.0
+_START_TIMEOUT_S = 10.0
+_EXIT_TIMEOUT_S = 5.0
 _SERVICES = {"load_node": "LoadNode", "unload_node": "UnloadNode", "list_nodes": "ListNodes"}
-_DISCOVERY_TIMEOUT = 1.0
+_DISCOVERY_TIMEOUT_S = 1.0
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
@@ -153,7 +153,7 @@ def run_standalone(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         async with _container_process(name) as process:
-            container = await find_container(session, name, _START_TIMEOUT)
+            container = await find_container(session, name, _START_TIMEOUT_S)
             await _load_component(session, container, arguments)
             return await process.wait()
 
@@ -174,7 +174,7 @@ async def _container_process(name: str) -> AsyncIterator[Process]:
             if process.returncode is None:
                 request_end(process)
                 try:
-                    await asyncio.wait_for(process.wait(), _ENDS_WITHIN)
+                    await asyncio.wait_for(process.wait(), _EXIT_TIMEOUT_S)
                 except asyncio.TimeoutError:
                     continue
         if process.returncode is None:
@@ -198,7 +198,7 @@ def containers(session: Session) -> list[str]:
     ]
 
 
-async def find_container(session: Session, name: str, timeout: float = _DISCOVERY_TIMEOUT) -> str:
+async def find_container(session: Session, name: str, timeout: float = _DISCOVERY_TIMEOUT_S) -> str:
     """Return the full name of a running container.
 
     Raises:

@@ -66,9 +66,9 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
 
         def emit() -> None:
             publisher.publish(String(data=greeting(host)))
-            counts.published += 1
+            counts.published_count += 1
             multicast.send(sender, greeting(host).encode())
-            counts.sent += 1
+            counts.sent_count += 1
 
         def print_table() -> None:
             print(counts.pop_table(arguments.topic, arguments.print_period))

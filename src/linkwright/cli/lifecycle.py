@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_ANSWER_TIMEOUT = 5.0
+_RESPONSE_TIMEOUT_S = 5.0
 _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
@@ -70,7 +70,7 @@ def run_get(arguments: argparse.Namespace) -> int:
             print(f"{node_state.label} [{node_state.id}]")
             return 0
         nodes = managed_nodes(session, hidden=hidden)
-        requests = [state(session, node, arguments.timeout or _ANSWER_TIMEOUT) for node in nodes]
+        requests = [state(session, node, arguments.timeout or _RESPONSE_TIMEOUT_S) for node in nodes]
         status = 0
         for node, node_state in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
             if isinstance(node_state, NoAnswerError):

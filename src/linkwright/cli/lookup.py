@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 NamesAndTypes = Sequence[tuple[str, Sequence[str]]]
 
-_POLL_INTERVAL = 0.1
+_POLL_INTERVAL_S = 0.1
 
 
 def visible(names_and_types: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
@@ -83,7 +83,7 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
         message = phrase("Could not determine the type for the passed topic '{name}'", name=name)
         raise unknown_name_error("CLI411", message, name, topic_names, hint)
     while not types:
-        await asyncio.sleep(_POLL_INTERVAL)
+        await asyncio.sleep(_POLL_INTERVAL_S)
         types = _types_of(session, name)
     return types
 

@@ -91,17 +91,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     create_parser.add_argument("--node-name", metavar="NODE", help="create an executable with this name")
     create_parser.add_argument("--library-name", metavar="LIBRARY", help="create a library with this name")
-    create_parser.set_defaults(answer=_create)
+    create_parser.set_defaults(handler=_create_package)
     _configure_queries(verbs)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the requested subcommand."""
-    run_verb: Callable[[argparse.Namespace], int] = arguments.answer
+    run_verb: Callable[[argparse.Namespace], int] = arguments.handler
     return run_verb(arguments)
 
 
-def _create(arguments: argparse.Namespace) -> int:
+def _create_package(arguments: argparse.Namespace) -> int:
     """Create a package, and print each step as ``ros2 pkg create`` does."""
     from linkwright.packages.creation.create import create_package
     from linkwright.packages.creation.request import PackageRequest
@@ -176,7 +176,7 @@ def _address_part(login: str) -> str:
 def _configure_queries(verbs: _Subparsers) -> None:
     """Declare the subcommands that describe packages."""
     list_parser = verbs.add_parser("list", help="list all packages", description="list all packages")
-    list_parser.set_defaults(answer=_list)
+    list_parser.set_defaults(handler=_print_packages)
 
     prefix_parser = verbs.add_parser(
         "prefix", help="print the install prefix of a package", description="print the install prefix of a package"
@@ -185,24 +185,24 @@ def _configure_queries(verbs: _Subparsers) -> None:
     prefix_parser.add_argument(
         "--share", action="store_true", help="print the package's share folder instead of its prefix"
     )
-    prefix_parser.set_defaults(answer=_prefix)
+    prefix_parser.set_defaults(handler=_print_prefix)
 
     executables_parser = verbs.add_parser(
         "executables", help="list the executables of packages", description="list the executables of packages"
     )
     executables_parser.add_argument("package", metavar="PACKAGE", nargs="?", help="the package (default: all packages)")
     executables_parser.add_argument("--full-path", action="store_true", help="print paths instead of names")
-    executables_parser.set_defaults(answer=_executables)
+    executables_parser.set_defaults(handler=_print_executables)
 
     xml_parser = verbs.add_parser(
         "xml", help="print the package.xml of a package", description="print the package.xml of a package"
     )
     xml_parser.add_argument("package", metavar="PACKAGE", help="the package")
     xml_parser.add_argument("-t", "--tag", metavar="TAG", help="print only the contents of these elements of <package>")
-    xml_parser.set_defaults(answer=_xml)
+    xml_parser.set_defaults(handler=_print_manifest)
 
 
-def _list(_: argparse.Namespace) -> int:
+def _print_packages(_: argparse.Namespace) -> int:
     from linkwright.launch import builtin_packages
     from linkwright.packages import PackageFinder
 
@@ -210,7 +210,7 @@ def _list(_: argparse.Namespace) -> int:
     return 0
 
 
-def _prefix(arguments: argparse.Namespace) -> int:
+def _print_prefix(arguments: argparse.Namespace) -> int:
     from linkwright.packages import PackageFinder, install_prefix
 
     share = PackageFinder().share(arguments.package)
@@ -218,7 +218,7 @@ def _prefix(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _executables(arguments: argparse.Namespace) -> int:
+def _print_executables(arguments: argparse.Namespace) -> int:
     from linkwright.launch import builtin_packages, executables_of
     from linkwright.packages import PackageFinder
 
@@ -230,7 +230,7 @@ def _executables(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _xml(arguments: argparse.Namespace) -> int:
+def _print_manifest(arguments: argparse.Namespace) -> int:
     from linkwright.packages import MANIFEST, PackageFinder
     from linkwright.xmltree import parse_file
 

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _NODE_NAME_PREFIX = "_ros2cli"
-_JOIN_TIMEOUT = 10.0
-_DISCOVERY_TIMEOUT = 3.0
-_POLL_INTERVAL = 0.01
+_JOIN_TIMEOUT_S = 10.0
+_DISCOVERY_TIMEOUT_S = 3.0
+_POLL_INTERVAL_S = 0.01
 
 
 def add_session_arguments(parser: argparse.ArgumentParser) -> None:
@@ -153,7 +153,7 @@ class Session:
         while not condition():
             if self._outcome.done() or (deadline is not None and loop.time() >= deadline):
                 return False
-            await asyncio.sleep(_POLL_INTERVAL)
+            await asyncio.sleep(_POLL_INTERVAL_S)
         return True
 
     async def wait_for_result(self, future: Future[T], timeout: float | None = None) -> T | None:
@@ -278,14 +278,14 @@ async def join_others(graph: Graph, spin_time: float | None, *, read_only: bool 
                 hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )
-    while not await asyncio.to_thread(transport.wait_until_ready, _JOIN_TIMEOUT) and transport.waits_for_others:
+    while not await asyncio.to_thread(transport.wait_until_ready, _JOIN_TIMEOUT_S) and transport.waits_for_others:
         pass  # the transport logs what it is waiting for
     if transport.problem is not None:
         raise transport.problem
     if spin_time is not None:
         await asyncio.sleep(spin_time)
     else:
-        await asyncio.to_thread(transport.wait_for_discovery, _DISCOVERY_TIMEOUT)
+        await asyncio.to_thread(transport.wait_for_discovery, _DISCOVERY_TIMEOUT_S)
 
 
 class ExitOnSigterm:

@@ -74,13 +74,13 @@ class Model:
         assert robot is not None
         return robot
 
-    def resolve(self, address: str) -> Path:
+    def resolve(self, uri: str) -> Path:
         """Return the file of a mesh's URI.
 
         Raises:
             LinkwrightError: if the package of the mesh is not found.
         """
-        return self.finder.resolve(address, self.path.parent)
+        return self.finder.resolve(uri, self.path.parent)
 
     def normalizer(self, other: Model) -> Callable[[str], str]:
         """Return a function that makes texts of this description comparable with those of another.

@@ -31,25 +31,25 @@ class Greetings:
 
     Attributes:
         own_host: the name of this computer; its own greetings are not counted.
-        published: the number of messages published on the topic.
-        sent: the number of multicast packets sent.
-        subscribed: the number of messages received on the topic, by the name of the sending computer.
-        received: the number of multicast packets received, by the name of the sending computer.
+        published_count: the number of messages published on the topic.
+        sent_count: the number of multicast packets sent.
+        topic_counts: the number of messages received on the topic, by the name of the sending computer.
+        multicast_counts: the number of multicast packets received, by the name of the sending computer.
     """
 
     own_host: str
-    published: int = 0
-    sent: int = 0
-    subscribed: Counter[str] = field(default_factory=Counter)
-    received: Counter[str] = field(default_factory=Counter)
+    published_count: int = 0
+    sent_count: int = 0
+    topic_counts: Counter[str] = field(default_factory=Counter)
+    multicast_counts: Counter[str] = field(default_factory=Counter)
 
     def count_topic_greeting(self, text: str) -> None:
         """Count a greeting received on the topic."""
-        self._count(self.subscribed, text)
+        self._count(self.topic_counts, text)
 
     def count_multicast_greeting(self, text: str) -> None:
         """Count a greeting received by multicast."""
-        self._count(self.received, text)
+        self._count(self.multicast_counts, text)
 
     def _count(self, counts: Counter[str], text: str) -> None:
         host = host_of(text)
@@ -65,17 +65,17 @@ class Greetings:
         """
         lines = [
             "MULTIMACHINE COMMUNICATION SUMMARY",
-            f"Topic: {topic}, Published Msg Count: {self.published}",
+            f"Topic: {topic}, Published Msg Count: {self.published_count}",
             "Subscribed from:",
-            *_format_rows(self.subscribed, period),
-            f"Multicast Group/Port: {DEFAULT_GROUP}/{DEFAULT_PORT}, Sent Msg Count: {self.sent}",
+            *_format_rows(self.topic_counts, period),
+            f"Multicast Group/Port: {DEFAULT_GROUP}/{DEFAULT_PORT}, Sent Msg Count: {self.sent_count}",
             "Received from:",
-            *_format_rows(self.received, period),
+            *_format_rows(self.multicast_counts, period),
             _SEPARATOR,
         ]
-        self.published = self.sent = 0
-        self.subscribed.clear()
-        self.received.clear()
+        self.published_count = self.sent_count = 0
+        self.topic_counts.clear()
+        self.multicast_counts.clear()
         return "\n".join(lines)
 
 

@@ -74,7 +74,8 @@ _POLL_SECONDS = 0.01
 _TRANSFORMS_WITHIN = 5.0
 """The maximum additional seconds to wait while published transforms were not received."""
 
-_LENGTH_TOLERANCE = 1e-3
+_MIN_QUATERNION_NORM = 1e-3
+"""A rotation with a smaller norm was not set."""
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """The stamp of a header at the start of a message, by byte order.
 
@@ -413,7 +414,7 @@ class _Watcher:
         ]
 
     async def _call_all(
-        self, kind: str, service: str, candidates: set[str] | None = None, **fields: Any
+        self, service_type: str, service: str, candidates: set[str] | None = None, **fields: Any
     ) -> dict[str, Any]:
         """Call a service of all nodes that offer it, and return the responses.
 
@@ -425,13 +426,13 @@ class _Watcher:
         service_names = {
             endpoint.name
             for endpoint in self.endpoints()
-            if endpoint.kind is EndpointKind.SERVICE and endpoint.type_name == kind
+            if endpoint.kind is EndpointKind.SERVICE and endpoint.type_name == service_type
         }
         nodes = [node for node in dict.fromkeys(self.nodes()) if f"{node}/{service}" in service_names]
         if candidates is not None:
             nodes = [node for node in nodes if node in candidates]
-        clients = {node: self._node.create_client(kind, f"{node}/{service}") for node in nodes}
-        request = get_service(kind).Request(**fields)
+        clients = {node: self._node.create_client(service_type, f"{node}/{service}") for node in nodes}
+        request = get_service(service_type).Request(**fields)
         futures = {node: client.call_async(request) for node, client in clients.items()}
         tasks = {node: asyncio.ensure_future(_await_result(future)) for node, future in futures.items()}
         if tasks:
@@ -475,5 +476,5 @@ def _is_transform(transform: Any) -> bool:
     numbers = (rotation.x, rotation.y, rotation.z, rotation.w, translation.x, translation.y, translation.z)
     return (
         all(map(math.isfinite, numbers))
-        and math.hypot(rotation.x, rotation.y, rotation.z, rotation.w) > _LENGTH_TOLERANCE
+        and math.hypot(rotation.x, rotation.y, rotation.z, rotation.w) > _MIN_QUATERNION_NORM
     )

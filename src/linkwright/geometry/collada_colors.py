@@ -25,7 +25,7 @@ class ColoredMesh(NamedTuple):
 
     Attributes:
         mesh: the triangles, in the file's unit.
-        matrix: the matrix of the mesh's frame in the frame of the file, shape (4, 4).
+        matrix: the transform from the mesh to the file, shape (4, 4).
         unit: meters per unit.
         color: the diffuse color of the material, or None if the triangles have no material.
     """
@@ -82,7 +82,7 @@ class _Materials:
     """
 
     def __init__(self, root: ET.Element) -> None:
-        self._space = root.tag.rpartition("}")[0] + "}"
+        self._namespace = root.tag.rpartition("}")[0] + "}"
         self._geometries = self._by_id(root, "library_geometries", "geometry")
         self._materials = self._by_id(root, "library_materials", "material")
         self._effects = self._by_id(root, "library_effects", "effect")
@@ -91,30 +91,34 @@ class _Materials:
         """Return the color of each element with triangles in an instance of a geometry."""
         bound = {
             material.get("symbol", ""): material.get("target", "").removeprefix("#")
-            for material in instance.iter(f"{self._space}instance_material")
+            for material in instance.iter(f"{self._namespace}instance_material")
         }
-        mesh = self._only(self._geometries[instance.get("url", "").removeprefix("#")], "mesh")
-        symbols = [part.get("material") for part in mesh if part.tag.removeprefix(self._space) not in NO_FACES]
+        mesh = self._single_child(self._geometries[instance.get("url", "").removeprefix("#")], "mesh")
+        symbols = [part.get("material") for part in mesh if part.tag.removeprefix(self._namespace) not in NO_FACES]
         return [None if symbol is None or symbol not in bound else self._color(bound[symbol]) for symbol in symbols]
 
     def _color(self, name: str) -> _Color:
-        effect = self._effects[self._only(self._materials[name], "instance_effect").get("url", "").removeprefix("#")]
-        technique = self._only(self._only(effect, "profile_COMMON"), "technique")
-        shading = [child for child in technique if child.find(f"{self._space}diffuse") is not None]
+        effect = self._effects[
+            self._single_child(self._materials[name], "instance_effect").get("url", "").removeprefix("#")
+        ]
+        technique = self._single_child(self._single_child(effect, "profile_COMMON"), "technique")
+        shading = [child for child in technique if child.find(f"{self._namespace}diffuse") is not None]
         if not shading:
             return _WHITE
-        numbers = parse_numbers(self._only(self._only(shading[0], "diffuse"), "color").text, np.float64).tolist()
+        numbers = parse_numbers(
+            self._single_child(self._single_child(shading[0], "diffuse"), "color").text, np.float64
+        ).tolist()
         if len(numbers) not in (3, 4):
             raise UnsupportedContent
         red, green, blue = (min(1.0, max(0.0, number)) for number in numbers[:3])
         return red, green, blue
 
-    def _only(self, node: ET.Element, tag: str) -> ET.Element:
-        children = node.findall(self._space + tag)
+    def _single_child(self, node: ET.Element, tag: str) -> ET.Element:
+        children = node.findall(self._namespace + tag)
         if len(children) != 1:
             raise UnsupportedContent
         return children[0]
 
     def _by_id(self, root: ET.Element, library: str, tag: str) -> dict[str, ET.Element]:
-        libraries = root.findall(self._space + library)
-        return {node.get("id", ""): node for element in libraries for node in element.findall(self._space + tag)}
+        libraries = root.findall(self._namespace + library)
+        return {node.get("id", ""): node for element in libraries for node in element.findall(self._namespace + tag)}

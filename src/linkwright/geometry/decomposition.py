@@ -47,7 +47,7 @@ def convex_pieces(vertices: Array, faces: Faces, max_pieces: int) -> list[Array]
         if _is_nearly_convex(vertices, component_faces, corners):
             pieces.append(corners)
         else:
-            concave.append((corners, _plates(vertices, component_faces, max_pieces)))
+            concave.append((corners, _list_plates(vertices, component_faces, max_pieces)))
     concave.sort(key=lambda item: len(item[1]))
     remaining = max_pieces - len(pieces) - len(concave)
     for corners, plates in concave:
@@ -104,7 +104,7 @@ def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
     return volume >= _NEARLY_CONVEX * polyhedron_properties(corners, hull).mass
 
 
-def _plates(vertices: Array, faces: Faces, max_plates: int) -> list[Array]:
+def _list_plates(vertices: Array, faces: Faces, max_plates: int) -> list[Array]:
     """Return plates for the flat faces of a part, and stop after more than `max_plates`."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -120,13 +120,13 @@ def _plates(vertices: Array, faces: Faces, max_plates: int) -> list[Array]:
         normal = normals[group[0]]
         hull_area = _area_of_hull(ring, normal)
         if area.sum() / 2 >= _NEARLY_CONVEX * hull_area:
-            plates.append(_plate(ring, normal))
+            plates.append(_make_plate(ring, normal))
         else:
-            plates += [_plate(triangle, normal) for triangle in triangles]
+            plates += [_make_plate(triangle, normal) for triangle in triangles]
     return plates
 
 
-def _plate(corners: Array, normal: Array) -> Array:
+def _make_plate(corners: Array, normal: Array) -> Array:
     return np.concatenate([corners, corners - THICKNESS * normal])
 
 

@@ -69,31 +69,31 @@ def _stl_faults(data: bytes) -> Iterator[Phrase]:
 
 def _text_stl_faults(data: bytes) -> Iterator[Phrase]:
     corners = 0
-    for number, tokens in _lines(data):
+    for line_number, tokens in _lines(data):
         if tokens[0] == "vertex":
             corners += 1
-            yield from _number_faults(number, tokens[1:], 3)
+            yield from _number_faults(line_number, tokens[1:], 3)
         elif tokens[0] == "endloop":
             if corners != 3:
-                yield _with_line(number, phrase("a facet has {count} corners, not 3", count=corners))
+                yield _with_line(line_number, phrase("a facet has {count} corners, not 3", count=corners))
             corners = 0
 
 
 def _obj_faults(data: bytes) -> Iterator[Phrase]:
     vertices = sum(tokens[0] == "v" for _, tokens in _lines(data))
-    for number, words in _lines(data):
+    for line_number, words in _lines(data):
         if words[0] == "v":
-            yield from _number_faults(number, words[1:4], 3)
+            yield from _number_faults(line_number, words[1:4], 3)
         elif words[0] == "f":
             for token in words[1:]:
                 try:
                     index = int(token.partition("/")[0])
                 except ValueError:
-                    yield _with_line(number, phrase("'{text}' is not a vertex number", text=token))
+                    yield _with_line(line_number, phrase("'{text}' is not a vertex number", text=token))
                     continue
                 if not 1 <= abs(index) <= vertices:
                     yield _with_line(
-                        number,
+                        line_number,
                         phrase(
                             "there is no vertex {index}: the mesh has {count} vertices", index=index, count=vertices
                         ),
@@ -101,10 +101,10 @@ def _obj_faults(data: bytes) -> Iterator[Phrase]:
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
-    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):
+    for line_number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):
         tokens = line.split()
         if tokens:
-            yield number, tokens
+            yield line_number, tokens
 
 
 def _number_faults(line: int, words: list[str], count: int) -> Iterator[Phrase]:
@@ -299,21 +299,21 @@ def _missing_reference_faults(document: dict[str, Any], entry: str, kind: str, i
 
 def _range_faults(document: dict[str, Any], binary: int | None) -> Iterator[Phrase]:
     views = document.get("bufferViews", [])
-    for number, view in enumerate(views):
+    for index, view in enumerate(views):
         buffer = document["buffers"][view["buffer"]]
         buffer_size = binary if binary is not None and "uri" not in buffer else buffer["byteLength"]
         if view.get("byteOffset", 0) + view["byteLength"] > buffer_size:
             yield phrase(
                 "{entry} reaches beyond the {found} bytes of its buffer",
-                entry=f"bufferViews[{number}]",
+                entry=f"bufferViews[{index}]",
                 found=buffer_size,
             )
-    for number, accessor in enumerate(document.get("accessors", ())):
+    for index, accessor in enumerate(document.get("accessors", ())):
         if "bufferView" in accessor:
             element_size = _COMPONENT_SIZES[accessor["componentType"]] * _COMPONENT_COUNTS[accessor["type"]]
             end = accessor.get("byteOffset", 0) + element_size * accessor["count"]
             if end > views[accessor["bufferView"]]["byteLength"]:
-                yield phrase("{entry} reaches beyond its bufferView", entry=f"accessors[{number}]")
+                yield phrase("{entry} reaches beyond its bufferView", entry=f"accessors[{index}]")
 
 
 _FAULTS: dict[str, Callable[[bytes], Iterator[Phrase]]] = {

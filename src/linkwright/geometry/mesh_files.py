@@ -157,7 +157,7 @@ def _read_meshes(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]
     logger = logging.getLogger("trimesh")
     if not logger.handlers:
         logger.addHandler(logging.NullHandler())  # trimesh's warnings are of no use to users.
-    scene: Any = _collada_scene(data, **options) if kind == "dae" else _scene(data, kind, **options)
+    scene: Any = _load_collada_scene(data, **options) if kind == "dae" else _load_scene(data, kind, **options)
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -167,13 +167,13 @@ def _read_meshes(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]
     scene.__dict__.clear()  # This breaks the reference cycle that keeps the file's bytes in memory.
 
 
-def _scene(data: bytes, kind: str, **options: Any) -> Any:
+def _load_scene(data: bytes, kind: str, **options: Any) -> Any:
     import trimesh
 
     return trimesh.load_scene(BytesIO(data), file_type=kind, process=False, **options)
 
 
-def _collada_scene(data: bytes, **options: Any) -> Any:
+def _load_collada_scene(data: bytes, **options: Any) -> Any:
     """Load the scene of a COLLADA file, ignoring materials that cannot be read.
 
     pycollada can skip broken materials, but also skips the geometry that uses them. The first attempt is therefore
@@ -182,9 +182,9 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
     from collada.common import DaeError  # type: ignore[import-untyped]  # pycollada has no types
 
     try:
-        return _scene(data, "dae", ignore_broken=False, **options)
+        return _load_scene(data, "dae", ignore_broken=False, **options)
     except DaeError:
-        return _scene(_without_broken_materials(data), "dae", ignore_broken=True, **options)
+        return _load_scene(_without_broken_materials(data), "dae", ignore_broken=True, **options)
 
 
 def _repair_xml(data: bytes) -> bytes | None:

@@ -53,6 +53,7 @@ Transform = tuple[float, float, float, float, float, float, float]
 IDENTITY: Transform = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 _GIMBAL_LOCK = 0.99999
+"""The sine of the pitch beyond which roll and yaw turn about the same axis."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,7 +116,7 @@ class NodeHost:
         if self._network is not None:
             self._network.join_soon(with_viewer=self.has_viewer)
 
-    def plan(self, plan: HostedPlan) -> None:
+    def schedule_node(self, plan: HostedPlan) -> None:
         """Plan a node, which starts as soon as possible.
 
         This has no effect while the launch is ending.
@@ -331,7 +331,7 @@ class NodeHost:
     async def _restart(self, plan: HostedPlan) -> None:
         with suppress(asyncio.TimeoutError):
             await asyncio.wait_for(self._closed.wait(), plan.respawn_delay)
-        self.plan(plan)
+        self.schedule_node(plan)
         await self.start_planned()
 
     def _show_findings(self) -> None:

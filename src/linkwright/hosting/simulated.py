@@ -106,7 +106,7 @@ class SimulatedWorld:
             )
 
         assert description.robot is not None, "something was inferred about it"
-        pose = (0.0, 0.0, -inference.ground, 0.0, 0.0, 0.0)
+        pose = (0.0, 0.0, -inference.ground_z, 0.0, 0.0, 0.0)
         path, text = Path(description.name).absolute(), _complete_text(description, inference)
         return cls(world, path, description, text, description.robot.name, pose, complete=complete)
 

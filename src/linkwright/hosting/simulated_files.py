@@ -1,4 +1,4 @@
-"""The files of a simulated world and its robot, reloaded when the user saves them."""
+"""The descriptions of a simulated world and its robot, reloaded when the user saves their files."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class SimulatedDescriptions(Descriptions):
 
     Args:
         finder: the finder of ROS packages.
-        complete: returns the text of a robot to simulate, completed with inferred values.
+        complete_robot: returns the text of a robot to simulate, completed with inferred values.
     """
 
-    def __init__(self, finder: PackageFinder, complete: Callable[[Description], str]) -> None:
+    def __init__(self, finder: PackageFinder, complete_robot: Callable[[Description], str]) -> None:
         super().__init__(finder)
-        self._complete = complete
+        self._complete_robot = complete_robot
 
     def read(self, call: XacroCall) -> Any:
         """Return a robot, model or world that is read from its file.
@@ -55,7 +55,7 @@ class SimulatedDescriptions(Descriptions):
         if description.robot is None:
             return None, description.diagnostics
         self.store(call, description)
-        return self.store_text(call, self._complete(description), description.files), description.diagnostics
+        return self.store_text(call, self._complete_robot(description), description.files), description.diagnostics
 
     def store_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
         """Store a simulated text with all files from which it was created, and return the text."""

@@ -299,7 +299,7 @@ class ModelView:
             destinations=output_destinations(output),
             waits_for_fix=waits_for_fix,
         )
-        self.host.plan(plan)
+        self.host.schedule_node(plan)
 
     @property
     def _config_name(self) -> str:

@@ -212,10 +212,10 @@ class RangeFinder:
         self._minima.clear()
         self._maxima.clear()
 
-    def range_of(self, values: NDArray[Any]) -> Range:
-        """Return the range for an image.
+    def update_range(self, values: NDArray[Any]) -> Range:
+        """Add an image to the window, and return its range.
 
-        Values that are not finite are ignored.
+        Values that are not finite are ignored. A fixed range leaves the window unchanged.
         """
         if self.fixed is not None:
             return self.fixed
@@ -223,9 +223,10 @@ class RangeFinder:
         if not np.isfinite(minimum + maximum):
             finite = values[np.isfinite(values)]
             minimum, maximum = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
-        return Range(self._median(self._minima, minimum), self._median(self._maxima, maximum))
+        return Range(self._add_and_get_median(self._minima, minimum), self._add_and_get_median(self._maxima, maximum))
 
-    def _median(self, values: deque[float], value: float) -> float:
+    def _add_and_get_median(self, values: deque[float], value: float) -> float:
+        """Add a value to the values of the window, and return the median."""
         if self.window <= 1:
             return value
         while len(values) > self.window - 1:
@@ -235,7 +236,7 @@ class RangeFinder:
 
 
 def _normalize(values: NDArray[Any], ranges: RangeFinder) -> Pixels:
-    limits = ranges.range_of(values)
+    limits = ranges.update_range(values)
     span = limits.white - limits.black
     if not span > 0.0:
         return np.zeros(values.shape, np.uint8)
@@ -341,8 +342,8 @@ def packed_to_rgb(pairs: Pixels, layout: str) -> Pixels:
     """
     luma, chroma = (pairs[..., 1], pairs[..., 0]) if layout == "uyvy" else (pairs[..., 0], pairs[..., 1])
     width = luma.shape[1]
-    even_columns = chroma[:, : width - width % 2]
-    blue, red = np.repeat(even_columns[:, 0::2], 2, axis=1), np.repeat(even_columns[:, 1::2], 2, axis=1)
+    paired_chroma = chroma[:, : width - width % 2]
+    blue, red = np.repeat(paired_chroma[:, 0::2], 2, axis=1), np.repeat(paired_chroma[:, 1::2], 2, axis=1)
     if width % 2 and width > 1:  # the last pixel of an odd row has no partner
         blue, red = (np.concatenate([channel, channel[:, -1:]], axis=1) for channel in (blue, red))
     elif width == 1:

@@ -72,7 +72,9 @@ def estimate(
     for candidate_kind in (prefer, other_kind):
         shapes = link.collisions if candidate_kind == "collision" else link.visuals
         solids = [
-            shape_solid for shape in shapes if (shape_solid := _solid(shape, candidate_kind, meshes, notes)) is not None
+            shape_solid
+            for shape in shapes
+            if (shape_solid := _shape_solid(shape, candidate_kind, meshes, notes)) is not None
         ]
         if solids:
             kind = candidate_kind
@@ -94,7 +96,7 @@ def estimate(
     return Estimate(link.name, properties, kind, len(solids), basis, properties.mass / solid.mass, tuple(notes))
 
 
-def _solid(
+def _shape_solid(
     shape: Collision | Visual, kind: ShapeKind, meshes: MeshLibrary, notes: list[Phrase]
 ) -> MassProperties | None:
     """Return the mass properties of a shape with density 1, in the link frame.

@@ -20,8 +20,8 @@ _DOUBTFUL_RATIO = 10.0
 _ROUGH_RATIO = 2.0
 """The thresholds for doubtful and for rough moments, as ratios to the moments of a solid with the same shapes."""
 
-_DOUBTFUL_DISTANCE = 0.5
-_ROUGH_DISTANCE = 0.1
+_DOUBTFUL_DISTANCE_RATIO = 0.5
+_ROUGH_DISTANCE_RATIO = 0.1
 """The thresholds for doubtful and for rough centers of mass, as distances in fractions of the diagonal."""
 
 
@@ -146,13 +146,13 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
     reasons = []
     box = computed.equivalent_box()
     relative_distance = 0.0 if box is None else comparison.center_distance / float(np.linalg.norm(box))
-    if relative_distance > _ROUGH_DISTANCE:
+    if relative_distance > _ROUGH_DISTANCE_RATIO:
         words = phrase("its center of mass is {length} from the center of its shapes", length=_length_text(comparison))
         reasons.append(
             _Reason(
-                Grade.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE else Grade.ROUGH,
+                Grade.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE_RATIO else Grade.ROUGH,
                 words,
-                log(relative_distance / _ROUGH_DISTANCE),
+                log(relative_distance / _ROUGH_DISTANCE_RATIO),
             )
         )
     ratios = [ratio for ratio in comparison.moment_ratios or () if ratio > 0]

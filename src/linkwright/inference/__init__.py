@@ -1,6 +1,6 @@
 """The inference of the elements that a description lacks for simulation, with reasons."""
 
 from linkwright.inference.infer import infer
-from linkwright.inference.results import Drive, DriveKind, Finding, Inference, Wheel
+from linkwright.inference.results import Drive, DriveKind, Inference, InferredFact, Wheel
 
-__all__ = ["Drive", "DriveKind", "Finding", "Inference", "Wheel", "infer"]
+__all__ = ["Drive", "DriveKind", "Inference", "InferredFact", "Wheel", "infer"]

@@ -18,7 +18,7 @@ _MAX_OFFSET = 0.06
 _MAX_RADIUS_DIFFERENCE = 0.05
 """The maximum difference between the radii of a pair, as a fraction of the larger radius."""
 
-_SUPPORT_RADIUS_SHARE = 0.8
+_SUPPORT_RADIUS_FRACTION = 0.8
 """A wheel with less than this fraction of another pair's radius may only support the robot."""
 
 
@@ -111,7 +111,7 @@ def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list
     if len(fixed_pairs) == 1:
         return "differential"
     radii = [wheel.radius for pair in fixed_pairs for wheel in pair]
-    if min(radii) < _SUPPORT_RADIUS_SHARE * max(radii):
+    if min(radii) < _SUPPORT_RADIUS_FRACTION * max(radii):
         return None
     if len(fixed_pairs) == 2 and survey.is_mecanum(tuple(wheel for pair in fixed_pairs for wheel in pair)):
         return "mecanum"
@@ -200,4 +200,4 @@ def _supports_only(wheel: Wheel, pairs: list[Pair]) -> bool:
     Such a caster is a ball, or is much smaller than the paired wheels.
     """
     max_radius = max((wheel.radius for pair in pairs for wheel in pair), default=0.0)
-    return bool(pairs) and (wheel.width is None or wheel.radius < _SUPPORT_RADIUS_SHARE * max_radius)
+    return bool(pairs) and (wheel.width is None or wheel.radius < _SUPPORT_RADIUS_FRACTION * max_radius)

@@ -34,6 +34,7 @@ _CASTER_FRICTION = "0.0"
 """The friction of a caster. It is simulated without its swivel, so it slides where a real one would roll."""
 
 _GRAVITY = 9.81
+"""The acceleration of gravity in m/s2."""
 _MOTOR_RIM_SPEED = 1.0
 """The rim speed in m/s that a motor reaches against the damping of its wheel's joint."""
 _SKID_TORQUE_FACTOR = 4.0

@@ -9,7 +9,7 @@ from linkwright.inertia import MeshLibrary
 from linkwright.inference import gazebo
 from linkwright.inference.drives import DriveVerdict, infer_drive
 from linkwright.inference.missing import missing_collisions, missing_masses
-from linkwright.inference.results import Drive, DriveKind, Finding, Inference, Wheel
+from linkwright.inference.results import Drive, DriveKind, Inference, InferredFact, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 from linkwright.urdf import Joint, Robot
 from linkwright.xmltree import Element
@@ -114,7 +114,7 @@ class _InferenceBuilder:
             masses,
         )
 
-    def _link_masses(self, findings: list[Finding]) -> dict[str, float]:
+    def _link_masses(self, findings: list[InferredFact]) -> dict[str, float]:
         links = self._robot.links
         masses = {name: link.inertial.mass for name, link in links.items() if link.inertial is not None}
         name_by_element = {id(link.element): name for name, link in links.items()}
@@ -141,7 +141,7 @@ class _InferenceBuilder:
             if self._working_drive is None or joint.name in commanded
         )
 
-    def _drive_findings(self, held_joints: tuple[str, ...], mass: float) -> Iterator[Finding]:
+    def _drive_findings(self, held_joints: tuple[str, ...], mass: float) -> Iterator[InferredFact]:
         """Yield the findings about the drive, the casters and the joints."""
         root = self._robot.element
         if self._idle_drive is not None:
@@ -149,10 +149,10 @@ class _InferenceBuilder:
                 "'{drive}', the drive that '{robot}' declares, has no effect here",
                 **self._message_values(self._idle_drive),
             )
-            yield Finding(_diagnostic_at(self._idle_drive, "DRIVE205", message))
+            yield InferredFact(_diagnostic_at(self._idle_drive, "DRIVE205", message))
         if self._working_drive is not None:
             message = phrase("'{robot}' declares its own drive, '{drive}'", **self._message_values(self._working_drive))
-            yield Finding(_diagnostic_at(self._working_drive, "DRIVE202", message))
+            yield InferredFact(_diagnostic_at(self._working_drive, "DRIVE202", message))
             yield from self._holding_findings(held_joints)
             return
         drive = self._drive
@@ -167,7 +167,7 @@ class _InferenceBuilder:
                 kind=drive.kind,
                 reason=self._verdict.reason,
             )
-            yield Finding(
+            yield InferredFact(
                 self._diagnostic_at_root("DRIVE111", message),
                 root,
                 (gazebo.drive_element(self._robot, drive, self._base_frame, mass),),
@@ -178,20 +178,22 @@ class _InferenceBuilder:
             message = phrase(
                 "'{robot}' is fixed to the world: {reason}", robot=self._robot.name, reason=self._verdict.reason
             )
-            yield Finding(self._diagnostic_at_root("DRIVE113", message), root, tuple(_world_anchor(self._robot)))
+            yield InferredFact(self._diagnostic_at_root("DRIVE113", message), root, tuple(_world_anchor(self._robot)))
         yield from self._holding_findings(held_joints)
         moving = [joint.name for joint in self._robot.joints.values() if joint.type in _MOVING_TYPES]
         if moving and not gazebo.publishes_joint_states(self._robot):
             message = phrase("the positions of the joints are published as joint_states")
-            yield Finding(self._diagnostic_at_root("DRIVE115", message), root, (gazebo.joint_states_element(moving),))
+            yield InferredFact(
+                self._diagnostic_at_root("DRIVE115", message), root, (gazebo.joint_states_element(moving),)
+            )
 
-    def _holding_findings(self, held_joints: tuple[str, ...]) -> Iterator[Finding]:
+    def _holding_findings(self, held_joints: tuple[str, ...]) -> Iterator[InferredFact]:
         if held_joints:
             message = phrase(
                 "nothing drives {joints}: each holds its position until it receives a command",
                 joints=quoted_names(held_joints),
             )
-            yield Finding(
+            yield InferredFact(
                 self._diagnostic_at_root("DRIVE114", message),
                 self._robot.element,
                 (gazebo.joint_controllers_element(held_joints),),
@@ -201,16 +203,16 @@ class _InferenceBuilder:
         element_name = element.attributes.get("filename") or element.attributes.get("name") or element.tag
         return {"robot": self._robot.name, "drive": element_name}
 
-    def _no_drive_finding(self) -> Finding:
+    def _no_drive_finding(self) -> InferredFact:
         if not any(joint.type in _MOVING_TYPES for joint in self._robot.joints.values()):
             message = phrase("no joint of '{robot}' moves: there is nothing to drive", robot=self._robot.name)
-            return Finding(self._diagnostic_at_root("DRIVE203", message))
+            return InferredFact(self._diagnostic_at_root("DRIVE203", message))
         message = phrase(
             "the drive of '{robot}' is unknown: {reason}", robot=self._robot.name, reason=self._verdict.reason
         )
-        return Finding(self._diagnostic_at_root("DRIVE201", message, Severity.WARNING, _DRIVE_HINT))
+        return InferredFact(self._diagnostic_at_root("DRIVE201", message, Severity.WARNING, _DRIVE_HINT))
 
-    def _reversed_axes(self, drive: Drive) -> Iterator[Finding]:
+    def _reversed_axes(self, drive: Drive) -> Iterator[InferredFact]:
         """Yield findings that reverse the axes of driven wheels if they point to the right.
 
         Gazebo's plugins drive forward if the velocity about an axis that points to the left is positive.
@@ -229,9 +231,9 @@ class _InferenceBuilder:
                 "velocity must drive forward",
                 joint=joint.name,
             )
-            yield Finding(_diagnostic_at(joint.element, "DRIVE110", message), joint.element, (axis,))
+            yield InferredFact(_diagnostic_at(joint.element, "DRIVE110", message), joint.element, (axis,))
 
-    def _caster_findings(self) -> Iterator[Finding]:
+    def _caster_findings(self) -> Iterator[InferredFact]:
         for name in self._casters:
             element = self._robot.links[name].element
             if element is None or gazebo.has_friction(self._robot, name) or self._rolls_freely(name):
@@ -239,7 +241,7 @@ class _InferenceBuilder:
             message = phrase(
                 "link '{link}' touches the ground and is not driven, so its friction is set to zero", link=name
             )
-            yield Finding(
+            yield InferredFact(
                 _diagnostic_at(element, "DRIVE112", message), self._robot.element, (gazebo.frictionless_element(name),)
             )
 
@@ -248,7 +250,7 @@ class _InferenceBuilder:
         wheel = self._wheels.get(link)
         return wheel is not None and wheel.width is not None and wheel.steering is not None
 
-    def _tipping_findings(self, drive: Drive) -> Iterator[Finding]:
+    def _tipping_findings(self, drive: Drive) -> Iterator[InferredFact]:
         if drive.kind == "differential" and not self._casters and len(self._under.wheels) == 2:
             message = phrase(
                 "only the two driven wheels of '{robot}' touch the ground: the robot tips over until "
@@ -256,7 +258,7 @@ class _InferenceBuilder:
                 robot=self._robot.name,
             )
             hint = phrase("add a caster, such as a ball that touches the ground in front of or behind the wheels")
-            yield Finding(self._diagnostic_at_root("DRIVE204", message, Severity.WARNING, hint))
+            yield InferredFact(self._diagnostic_at_root("DRIVE204", message, Severity.WARNING, hint))
 
     def _diagnostic_at_root(
         self, code: str, message: Phrase, severity: Severity = Severity.INFO, hint: Phrase | None = None

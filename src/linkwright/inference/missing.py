@@ -18,7 +18,7 @@ from linkwright.inertia import DEFAULT_DENSITY, MeshLibrary, estimate
 from linkwright.inertia.blocks import inertial_parts
 from linkwright.inertia.verdict import format_digits
 from linkwright.inference.gazebo import format_number
-from linkwright.inference.results import Finding, Wheel
+from linkwright.inference.results import InferredFact, Wheel
 from linkwright.inference.shapes import Shape, vertices
 from linkwright.inference.undercarriage import Survey
 from linkwright.urdf import Box, Capsule, Cylinder, Inertial, Link, Mesh, Sphere
@@ -30,7 +30,7 @@ HOLLOW_DENSITY = 300.0
 The robots that tutorials use have 200 to 700 kg/m3.
 """
 
-_MIN_MASS = 0.01
+_MIN_MASS_KG = 0.01
 _MAX_MASS = 1000.0
 """The minimum and maximum of an inferred mass, in kg."""
 
@@ -41,7 +41,7 @@ _MAX_MESH_VERTICES = 20_000
 """The maximum number of vertices of a mesh for a collision. A larger mesh is replaced by the box around it."""
 
 
-def missing_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Iterable[str]) -> Iterator[Finding]:
+def missing_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Iterable[str]) -> Iterator[InferredFact]:
     """Yield findings with the collisions that links get from their visuals.
 
     Args:
@@ -65,7 +65,7 @@ def missing_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Ite
                 yield from _link_collisions(survey, link, wheel)
 
 
-def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterator[Finding]:
+def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterator[InferredFact]:
     element = link.element
     if element is None:
         return
@@ -79,7 +79,7 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
             message = phrase(
                 "link '{link}' gets no <collision>: its mesh '{name}' cannot be read", link=link.name, name=name
             )
-            yield Finding(_diagnostic_at("DRIVE105", message, element, Severity.WARNING))
+            yield InferredFact(_diagnostic_at("DRIVE105", message, element, Severity.WARNING))
             continue
         collisions.append(collision[0])
         descriptions.append(collision[1])
@@ -87,7 +87,7 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
         message = phrase(
             "link '{link}' has no <collision>: it gets {shape}", link=link.name, shape=joined(descriptions)
         )
-        yield Finding(_diagnostic_at("DRIVE101", message, element), element, tuple(collisions))
+        yield InferredFact(_diagnostic_at("DRIVE101", message, element), element, tuple(collisions))
 
 
 def _visual_to_collision(
@@ -131,7 +131,7 @@ def _visual_to_collision(
     )
 
 
-def missing_masses(survey: Survey, wheels: Iterable[str], *, fixed_base: bool) -> Iterator[Finding]:
+def missing_masses(survey: Survey, wheels: Iterable[str], *, fixed_base: bool) -> Iterator[InferredFact]:
     """Yield findings with the ``<inertial>`` of links that lack a mass or moments of inertia.
 
     Args:
@@ -157,7 +157,9 @@ def missing_masses(survey: Survey, wheels: Iterable[str], *, fixed_base: bool) -
         yield from _missing_body_mass(members, densities, survey.meshes)
 
 
-def _missing_body_mass(members: list[Link], densities: Mapping[str, float], meshes: MeshLibrary) -> Iterator[Finding]:
+def _missing_body_mass(
+    members: list[Link], densities: Mapping[str, float], meshes: MeshLibrary
+) -> Iterator[InferredFact]:
     has_mass_source = False
     for link in members:
         density = densities[link.name]
@@ -165,7 +167,7 @@ def _missing_body_mass(members: list[Link], densities: Mapping[str, float], mesh
         if properties is None or link.element is None:
             continue
         has_mass_source = True
-        limited_mass = min(max(properties.mass, _MIN_MASS), _MAX_MASS)
+        limited_mass = min(max(properties.mass, _MIN_MASS_KG), _MAX_MASS)
         limited = properties.with_mass(limited_mass)
         message = phrase(
             "link '{link}' has no mass: it gets {mass:.3g} kg, the mass of its shapes at {density} kg/m3",
@@ -183,7 +185,7 @@ def _missing_body_mass(members: list[Link], densities: Mapping[str, float], mesh
         yield _inertial_finding("DRIVE103", message, members[0], _SHAPELESS_BODY)
 
 
-def _missing_tensor(link: Link, meshes: MeshLibrary) -> Iterator[Finding]:
+def _missing_tensor(link: Link, meshes: MeshLibrary) -> Iterator[InferredFact]:
     """Yield a finding with the ``<inertial>`` of a link with mass and zero moments of inertia."""
     inertial = link.inertial
     if inertial is None or not inertial.has_mass or any(_moments(inertial)) or link.element is None:
@@ -203,11 +205,11 @@ def _moments(inertial: Inertial) -> tuple[float, ...]:
     return (inertial.ixx, inertial.ixy, inertial.ixz, inertial.iyy, inertial.iyz, inertial.izz)
 
 
-def _inertial_finding(code: str, message: Phrase, link: Link, properties: MassProperties) -> Finding:
+def _inertial_finding(code: str, message: Phrase, link: Link, properties: MassProperties) -> InferredFact:
     element = Element("inertial")
     element.children += [Element(tag, dict(attributes)) for tag, attributes in inertial_parts(properties)]
     assert link.element is not None, "it was looked for"
-    return Finding(_diagnostic_at(code, message, link.element), link.element, (element,), properties)
+    return InferredFact(_diagnostic_at(code, message, link.element), link.element, (element,), properties)
 
 
 def _wheel_in_link(survey: Survey, wheel: Wheel) -> tuple[Vector3, Vector3]:

@@ -68,7 +68,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class InferredFact:
     """A fact about a robot that was inferred or could not be inferred.
 
     Attributes:
@@ -96,18 +96,18 @@ class Inference:
         casters: the links that touch the ground and only slide, or roll without a drive.
         held_joints: the joints, except those of wheels, that hold their position and can be commanded, in file order.
         fixed_base: whether the robot's root is fixed to the world.
-        ground: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest wheel, or
+        ground_z: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest wheel, or
             without wheels of the lowest point; 0 for a fixed base. A robot is placed in a world at minus this height.
         masses: the mass of each link in kg, declared or inferred.
     """
 
     drive: Drive | None
-    findings: tuple[Finding, ...]
+    findings: tuple[InferredFact, ...]
     base_frame: str
     casters: tuple[str, ...] = ()
     held_joints: tuple[str, ...] = ()
     fixed_base: bool = False
-    ground: float = 0.0
+    ground_z: float = 0.0
     masses: Mapping[str, float] = field(default_factory=dict)
 
     @property

@@ -16,7 +16,7 @@ from linkwright.inertia.source_edits import (
     written_link,
 )
 from linkwright.inertia.writing import write_edits
-from linkwright.inference.results import Finding, Inference
+from linkwright.inference.results import Inference, InferredFact
 from linkwright.lint.fix import is_literal, value_edit
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.xmltree import Element, Text
@@ -50,7 +50,7 @@ def write_inference(robot: Robot, inference: Inference) -> WriteResult:
     Raises:
         LinkwrightError: INR201, a file cannot be written.
     """
-    findings_by_owner: dict[int, list[Finding]] = {}
+    findings_by_owner: dict[int, list[InferredFact]] = {}
     for finding in inference.findings:
         if finding.owner is not None:
             findings_by_owner.setdefault(id(finding.owner), []).append(finding)
@@ -76,7 +76,7 @@ class _Writer:
         elements += [joint.element for joint in robot.joints.values()]
         self._uses_by_position = Counter(_source_position(element) for element in elements if element is not None)
 
-    def edits(self, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+    def edits(self, findings: list[InferredFact]) -> tuple[SourceText, list[Replacement]]:
         """Return the source text, and the edits for the findings of one owner.
 
         Raises:
@@ -92,7 +92,7 @@ class _Writer:
             return self._joint_edits(owner, findings)
         return self._root_edits(owner, findings)
 
-    def _link_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+    def _link_edits(self, owner: Element, findings: list[InferredFact]) -> tuple[SourceText, list[Replacement]]:
         link = self._links[id(owner)]
         source_link = written_link(link)
         source = _source_text(source_link)
@@ -105,7 +105,7 @@ class _Writer:
                 added += finding.added
         return source, [*changes, *_insertion(source_link, added)]
 
-    def _joint_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+    def _joint_edits(self, owner: Element, findings: list[InferredFact]) -> tuple[SourceText, list[Replacement]]:
         source_element = written_element(owner, "joint")
         source = _source_text(source_element)
         (axis,) = (element for finding in findings for element in finding.added)
@@ -117,7 +117,7 @@ class _Writer:
             raise NotWritableError(phrase("its <axis> is written with expressions"))
         return source, [Replacement(edit.start, edit.end, edit.replacement)]
 
-    def _root_edits(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+    def _root_edits(self, owner: Element, findings: list[InferredFact]) -> tuple[SourceText, list[Replacement]]:
         source_element = written_element(owner, owner.tag)
         added = [element for finding in findings for element in finding.added]
         for name in sorted(_possible_names(added)):
@@ -158,7 +158,7 @@ def _source_position(element: Element) -> tuple[str, int]:
     return ("", id(element)) if element.source is None else (element.source.name, element.offset)
 
 
-def _refusal(finding: Finding, reason: str) -> Diagnostic:
+def _refusal(finding: InferredFact, reason: str) -> Diagnostic:
     diagnostic = finding.diagnostic
     message = phrase(
         "an inferred element is not written to the file, because {reason}: {element}",

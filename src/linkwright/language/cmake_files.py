@@ -131,12 +131,12 @@ class _CMakeCursor:
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
     completions: dict[str, Completion] = {}
-    for item in _completions(_CMakeCursor(document, offset)):
+    for item in _offer_completions(_CMakeCursor(document, offset)):
         completions.setdefault(item.label, item)
     yield from completions.values()
 
 
-def _completions(build: _CMakeCursor) -> Iterator[Completion]:
+def _offer_completions(build: _CMakeCursor) -> Iterator[Completion]:
     start = build.offset - len(build.typed)
     if build.call is None:
         if _STATEMENT.search(build.before):
@@ -149,13 +149,13 @@ def _completions(build: _CMakeCursor) -> Iterator[Completion]:
         yield from build.packages(start)
     elif (command == "ament_target_dependencies" and words) or command == "ament_export_dependencies":
         names = dict.fromkeys(_FIND_PACKAGE.findall(build.document.text))
-        yield from _value_completions((name for name in names if name not in words), start, ItemKind.PACKAGE)
+        yield from _make_value_completions((name for name in names if name not in words), start, ItemKind.PACKAGE)
     elif command == "install" and keyword in ("DIRECTORY", "FILES", "PROGRAMS"):
         yield from offer_files(build.folder, build.typed, build.offset)
     elif keyword.endswith("DESTINATION"):
-        yield from _value_completions(_DESTINATIONS, start)
+        yield from _make_value_completions(_DESTINATIONS, start)
     elif command == "rosidl_generate_interfaces" and words and keyword != "DEPENDENCIES":
-        yield from _value_completions(
+        yield from _make_value_completions(
             (name for name in _interfaces(build.folder) if name not in words), start, ItemKind.FILE
         )
     elif command == "rosidl_generate_interfaces" and words:
@@ -163,7 +163,9 @@ def _completions(build: _CMakeCursor) -> Iterator[Completion]:
     elif command == "pluginlib_export_plugin_description_file" and words:
         yield from offer_files(build.folder, build.typed, build.offset)
     elif command == "pluginlib_export_plugin_description_file":
-        yield from _value_completions(("hardware_interface", "controller_interface", "nav2_core", "rviz_common"), start)
+        yield from _make_value_completions(
+            ("hardware_interface", "controller_interface", "nav2_core", "rviz_common"), start
+        )
         yield from build.packages(start)
     elif command in ("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"):
         if words:
@@ -173,8 +175,8 @@ def _completions(build: _CMakeCursor) -> Iterator[Completion]:
     elif (
         command.startswith("target_") or (command == "install" and keyword == "TARGETS") or command in _TARGET_COMMANDS
     ):
-        yield from _value_completions((name for name in build.targets() if name not in words), start)
-    yield from _value_completions((word for word in _KEYWORDS.get(command, ()) if word not in words), start)
+        yield from _make_value_completions((name for name in build.targets() if name not in words), start)
+    yield from _make_value_completions((word for word in _KEYWORDS.get(command, ()) if word not in words), start)
     if not build.typed or build.typed.startswith("$"):
         yield Completion("${PROJECT_NAME}", ItemKind.VALUE, start)
 
@@ -182,7 +184,7 @@ def _completions(build: _CMakeCursor) -> Iterator[Completion]:
 _TARGET_COMMANDS = frozenset({"ament_target_dependencies", "rclcpp_components_register_node", "ament_export_targets"})
 
 
-def _value_completions(names: Iterable[str], start: int, kind: ItemKind = ItemKind.VALUE) -> Iterator[Completion]:
+def _make_value_completions(names: Iterable[str], start: int, kind: ItemKind = ItemKind.VALUE) -> Iterator[Completion]:
     for name in names:
         yield Completion(name, kind, start)
 

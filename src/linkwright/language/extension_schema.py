@@ -29,13 +29,13 @@ def _with_text(rule: ElementRule, meaning: str) -> ElementRule:
 
 def _parameter(meaning: str) -> ElementRule:
     name = AttributeRule("name", PARAMETER_NAME, "the name of the parameter", required=True)
-    return _with_text(ElementRule("param", meaning, (name,), many=True), "the value of the parameter")
+    return _with_text(ElementRule("param", meaning, (name,), is_repeated=True), "the value of the parameter")
 
 
 _LIMITS = ElementRule(
     "limits",
     "whether commands are limited",
-    (AttributeRule("enable", TRUTH, "whether commands are limited", default="true", usual=True),),
+    (AttributeRule("enable", TRUTH, "whether commands are limited", default="true", usually_written=True),),
 )
 
 
@@ -54,7 +54,7 @@ def _interface(tag: str, meaning: str) -> ElementRule:
             AttributeRule("size", INTEGER, "the number of values", default="1"),
         ),
         (_parameter("a property of the interface, such as min, max or initial_value"), _LIMITS),
-        many=True,
+        is_repeated=True,
     )
 
 
@@ -68,12 +68,17 @@ def _transmission_part(tag: str, name: AttributeRule, meaning: str) -> ElementRu
     return ElementRule(
         tag,
         meaning,
-        (name, AttributeRule("role", TEXT, "its role in the transmission, such as joint1 or actuator1", usual=True)),
+        (
+            name,
+            AttributeRule(
+                "role", TEXT, "its role in the transmission, such as joint1 or actuator1", usually_written=True
+            ),
+        ),
         (
             value("mechanical_reduction", NUMBER, "the ratio of the speeds of actuator and joint", default="1"),
             value("offset", NUMBER, "the position of the joint where the actuator is at zero", "rad or m", default="0"),
         ),
-        many=True,
+        is_repeated=True,
     )
 
 
@@ -116,15 +121,17 @@ ROS2_CONTROL = ElementRule(
             "a joint of the description, with its command and state interfaces",
             (_JOINT, AttributeRule("mimic", TRUTH, "whether it follows the joint that its <mimic> names")),
             (_COMMAND, _STATE, _COMPONENT_PARAMETER, _LIMITS),
-            many=True,
+            is_repeated=True,
         ),
-        ElementRule("sensor", "a sensor with its states", (_NAME,), (_SENSOR_STATE, _COMPONENT_PARAMETER), many=True),
+        ElementRule(
+            "sensor", "a sensor with its states", (_NAME,), (_SENSOR_STATE, _COMPONENT_PARAMETER), is_repeated=True
+        ),
         ElementRule(
             "gpio",
             "inputs and outputs that belong to no joint",
             (_NAME,),
             (_COMMAND, _STATE, _COMPONENT_PARAMETER),
-            many=True,
+            is_repeated=True,
         ),
         ElementRule(
             "transmission",
@@ -136,10 +143,10 @@ ROS2_CONTROL = ElementRule(
                 _transmission_part("joint", _JOINT, "a joint of the transmission"),
                 _parameter("a parameter of the transmission"),
             ),
-            many=True,
+            is_repeated=True,
         ),
     ),
-    many=True,
+    is_repeated=True,
 )
 
 _ROS1_INTERFACE = value("hardwareInterface", TEXT, "the interface, such as hardware_interface/PositionJointInterface")
@@ -149,16 +156,16 @@ TRANSMISSION = ElementRule(
     (_NAME,),
     (
         value("type", TEXT, "the class, such as transmission_interface/SimpleTransmission"),
-        ElementRule("joint", "the joint", (_JOINT,), (_ROS1_INTERFACE,), many=True),
+        ElementRule("joint", "the joint", (_JOINT,), (_ROS1_INTERFACE,), is_repeated=True),
         ElementRule(
             "actuator",
             "the actuator",
             (_NAME,),
             (value("mechanicalReduction", NUMBER, "the ratio of the speeds of actuator and joint"), _ROS1_INTERFACE),
-            many=True,
+            is_repeated=True,
         ),
     ),
-    many=True,
+    is_repeated=True,
 )
 
 _LINK_SETTINGS = (
@@ -193,7 +200,7 @@ _MODEL_TAGS = ("static", "self_collide", "allow_auto_disable", "pose", "enable_w
 GAZEBO = ElementRule(
     "gazebo",
     "settings for the simulator, for the link or joint that it names or else for the whole robot",
-    (AttributeRule("reference", PART_NAME, "the link or joint; without it, the whole robot", usual=True),),
+    (AttributeRule("reference", PART_NAME, "the link or joint; without it, the whole robot", usually_written=True),),
     (
         *(LINK.child_rules[tag] for tag in ("sensor", "visual", "collision", "light", "velocity_decay")),
         MODEL.child_rules["plugin"],
@@ -201,7 +208,7 @@ GAZEBO = ElementRule(
         *_JOINT_SETTINGS,
         *(MODEL.child_rules[tag] for tag in _MODEL_TAGS if tag in MODEL.child_rules),
     ),
-    many=True,
+    is_repeated=True,
 )
 
 DESCRIPTION = replace(ROBOT, children=(*ROBOT.children, GAZEBO, ROS2_CONTROL, TRANSMISSION))

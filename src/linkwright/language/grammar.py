@@ -21,7 +21,7 @@ _CONDITION = ValueType("true or false")
 
 
 def _tag(name: str, meaning: str, *attributes: AttributeRule) -> ElementRule:
-    return ElementRule(f"xacro:{name}", meaning, attributes, many=True)
+    return ElementRule(f"xacro:{name}", meaning, attributes, is_repeated=True)
 
 
 XACRO = {
@@ -31,7 +31,7 @@ XACRO = {
             "property",
             "a named value, or a block of elements",
             AttributeRule("name", _NAMES, "the name in expressions", required=True),
-            AttributeRule("value", _TEXT, "the value, which may contain expressions", usual=True),
+            AttributeRule("value", _TEXT, "the value, which may contain expressions", usually_written=True),
             AttributeRule("default", _TEXT, "the value unless the property has one"),
             AttributeRule("scope", ValueType("parent or global"), "where it is defined", default="local"),
             AttributeRule("lazy_eval", _CONDITION, "whether it is evaluated when it is used", default="true"),
@@ -40,7 +40,7 @@ XACRO = {
             "arg",
             "a value that the caller sets, as in xacro FILE NAME:=VALUE",
             AttributeRule("name", _NAMES, "the name in $(arg NAME)", required=True),
-            AttributeRule("default", _TEXT, "the value if the caller gives none", usual=True),
+            AttributeRule("default", _TEXT, "the value if the caller gives none", usually_written=True),
         ),
         _tag(
             "include",
@@ -53,7 +53,7 @@ XACRO = {
             "macro",
             "a piece of XML with parameters; a call is <xacro:NAME .../>",
             AttributeRule("name", _NAMES, "the name of the macro", required=True),
-            AttributeRule("params", _TEXT, "the parameters: a, b:=default, *block, **blocks", usual=True),
+            AttributeRule("params", _TEXT, "the parameters: a, b:=default, *block, **blocks", usually_written=True),
         ),
         _tag(
             "if",
@@ -129,7 +129,7 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
         elements: their start tags, which determine the parameters of simulator plugins, or an empty sequence.
     """
     current: ElementRule | None = None
-    for number, tag in enumerate(tags):
+    for index, tag in enumerate(tags):
         if tag.startswith(PREFIX):
             continue
         if current is None:
@@ -138,8 +138,8 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
             current = current.child_rules.get(tag) or _rule_in_macro(root, tags, tag)
         if current is None:
             return None
-        if tag == "plugin" and "filename" in current.attribute_rules and number < len(elements):
-            current = _rule_of_plugin(elements[number]) or current
+        if tag == "plugin" and "filename" in current.attribute_rules and index < len(elements):
+            current = _rule_of_plugin(elements[index]) or current
     return current
 
 

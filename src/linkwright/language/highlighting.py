@@ -69,8 +69,8 @@ def highlights_in(text: str, file: Path) -> list[Highlight]:
     for name in occurrences_in(text, file):
         if "$" not in name.name:
             highlights.setdefault(name.start, Highlight(name.start, name.end, _KINDS[name.kind], name.is_definition))
-    for start, value in _values(text):
-        for highlight in _in_value(value, start):
+    for start, value in _find_values(text):
+        for highlight in _highlight_value(value, start):
             highlights.setdefault(highlight.start, highlight)
     result: list[Highlight] = []
     for highlight in sorted(highlights.values(), key=lambda highlight: highlight.start):
@@ -79,7 +79,7 @@ def highlights_in(text: str, file: Path) -> list[Highlight]:
     return result
 
 
-def _values(text: str) -> Iterator[tuple[int, str]]:
+def _find_values(text: str) -> Iterator[tuple[int, str]]:
     """Yield the attribute values and texts with a dollar sign, each with its offset."""
     for token in tokens(text):
         if token.kind is Kind.TEXT and "$" in token.text:
@@ -89,7 +89,7 @@ def _values(text: str) -> Iterator[tuple[int, str]]:
                 yield attribute.value_start, attribute.value
 
 
-def _in_value(value: str, start: int) -> Iterator[Highlight]:
+def _highlight_value(value: str, start: int) -> Iterator[Highlight]:
     try:
         parts = tokenize(value)
     except Fault:  # The expression is still being typed.

@@ -49,12 +49,12 @@ class IncludeIndex:
             texts: texts that replace those of files.
             computed: whether an include with a computed path counts for each file that it can mean.
         """
-        includers = self._includers(texts)
+        includers = self._index_includers(texts)
         entries: dict[Path, None] = {}
         seen_files, pending = {file}, [file]
         while pending:
             current = pending.pop()
-            direct_includers = self._includers_of(current, includers, computed=computed)
+            direct_includers = self._find_includers(current, includers, computed=computed)
             if not direct_includers:
                 entries[current] = None
             for other in direct_includers:
@@ -70,8 +70,8 @@ class IncludeIndex:
             texts: texts that replace those of files.
         """
         files = dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))
-        includers = self._includers(texts)
-        return [file for file in files if not self._includers_of(file, includers)]
+        includers = self._index_includers(texts)
+        return [file for file in files if not self._find_includers(file, includers)]
 
     def related_files(self, file: Path, texts: Mapping[Path, str], *, computed: bool = False) -> list[Path]:
         """Return a file and all files of the descriptions that include it.
@@ -100,7 +100,7 @@ class IncludeIndex:
                     pending += filter(inclusion.may_compute, self.files)
         return list(related_files)
 
-    def _includers(self, texts: Mapping[Path, str]) -> dict[str, list[tuple[Path, Inclusion]]]:
+    def _index_includers(self, texts: Mapping[Path, str]) -> dict[str, list[tuple[Path, Inclusion]]]:
         """Return the includes of all files, by the names of the included files."""
         includers: dict[str, list[tuple[Path, Inclusion]]] = {}
         for file in dict.fromkeys((*self.files, *texts)):
@@ -108,7 +108,7 @@ class IncludeIndex:
                 includers.setdefault(inclusion.name, []).append((file, inclusion))
         return includers
 
-    def _includers_of(
+    def _find_includers(
         self, file: Path, includers: Mapping[str, list[tuple[Path, Inclusion]]], *, computed: bool = False
     ) -> list[Path]:
         """Return the other files that include a file."""

@@ -78,7 +78,7 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
     proof = ExpansionProof(project, texts, definition.file)
     error: UnprovedError | None = None
     for is_raw in (True, False):
-        edits = [removal, *_replacements(project, texts, uses, value, is_raw=is_raw)]
+        edits = [removal, *_generate_replacements(project, texts, uses, value, is_raw=is_raw)]
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -97,7 +97,7 @@ def _value(element: SourceElement) -> str | None:
     return attributes.get("value")
 
 
-def _replacements(
+def _generate_replacements(
     project: Workspace, texts: Mapping[Path, str], uses: Sequence[Occurrence], value: str, *, is_raw: bool
 ) -> Iterator[Edit]:
     """Yield the edits of the uses of a property.
@@ -137,7 +137,7 @@ def _replacements(
             if span not in replaced_ranges:
                 replaced_ranges.add(span)
                 names = [candidate for candidate in places if span[0] <= candidate.start < span[1]]
-                yield Edit(file, *span, _replacement(expression, piece, names, value, is_raw=is_raw))
+                yield Edit(file, *span, _make_replacement(expression, piece, names, value, is_raw=is_raw))
 
 
 def _pieces(text: str) -> Iterator[_Piece]:
@@ -158,7 +158,7 @@ def _expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | Non
     )
 
 
-def _replacement(
+def _make_replacement(
     expression: SourceExpression, piece: _Piece, names: Sequence[Occurrence], value: str, *, is_raw: bool
 ) -> str:
     """Return the text that replaces an expression with the property."""

@@ -103,7 +103,7 @@ def _offer_types(document: Document, typed: str, start: int) -> Iterator[Complet
     likely = [*dict.fromkeys((*_used_types(document, start), *_COMMON_TYPES))]
     if slash:
         names = [f"{package}/{name}" for name in _names_in(document, package)]
-        ranks = {name: number for number, name in enumerate(likely)}
+        ranks = {name: index for index, name in enumerate(likely)}
         for name in sorted(names, key=lambda name: (ranks.get(name, len(ranks)), name)):
             yield Completion(name, ItemKind.NAME, start)
         return
@@ -187,9 +187,9 @@ def _symbols(document: Document) -> Iterator[Symbol]:
     separators = [(match.start(), match.end()) for match in _SEPARATOR.finditer(text)]
     bounds = [0, *(end for _, end in separators)], [*(start for start, _ in separators), len(text)]
     names = SECTIONS.get(document.file.suffix[1:], ("",))
-    for number, (start, end) in enumerate(zip(*bounds, strict=True)):
+    for index, (start, end) in enumerate(zip(*bounds, strict=True)):
         fields = tuple(_fields(text, start, end))
-        name = names[number].lstrip("_") if number < len(names) else ""
+        name = names[index].lstrip("_") if index < len(names) else ""
         if not name:
             yield from fields
         else:

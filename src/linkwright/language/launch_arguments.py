@@ -143,14 +143,16 @@ def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
     python = python_text(text)
     for call in python.calls_of(*_DECLARATIONS):
         name = call.argument("name", 0)
-        literal = _literal(name)
+        literal = _read_literal(name)
         default, description = call.argument("default_value"), call.argument("description")
         default_text = None if default is None else _source_of(_resolve(python, default), text)
         description_text = (
             "".join(part.value for part in description.parts if isinstance(part, Text)) if description else ""
         )
         if literal is not None and literal.value:
-            choices = _literals(call.argument("choices")) if call.function == _DECLARATIONS[0] else ("true", "false")
+            choices = (
+                _read_literals(call.argument("choices")) if call.function == _DECLARATIONS[0] else ("true", "false")
+            )
             yield LaunchArgument(literal.value, file, literal.start, default_text, description_text, choices)
         elif name is not None and len(name.parts) == 1 and isinstance(name.parts[0], Name):
             for entry, values in _loop_values(python, call, name.parts[0].value):
@@ -191,24 +193,26 @@ def _entries(python: PythonText, values: Part) -> Iterator[tuple[Text, list[str]
         assigned = python.bindings.get(bound)
         values = assigned.parts[0] if assigned is not None and assigned.parts else values
     for item in values.items if isinstance(values, Group) else ():
-        entry = _literal(item)
+        entry = _read_literal(item)
         if entry is not None:
             texts = [part for part in item.after_colon if part is not entry]
-            inner = [_literal(inner_item) for group in texts if isinstance(group, Group) for inner_item in group.items]
+            inner = [
+                _read_literal(inner_item) for group in texts if isinstance(group, Group) for inner_item in group.items
+            ]
             strings = [part for part in texts if isinstance(part, Text)] or [part for part in inner if part is not None]
             yield entry, [part.value for part in strings]
 
 
-def _literal(item: Item | None) -> Text | None:
+def _read_literal(item: Item | None) -> Text | None:
     part = item.parts[0] if item is not None and item.parts else None
     return part if isinstance(part, Text) else None
 
 
-def _literals(item: Item | None) -> tuple[str, ...]:
+def _read_literals(item: Item | None) -> tuple[str, ...]:
     part = item.parts[0] if item is not None and item.parts else None
     if not isinstance(part, Group):
         return ()
-    return tuple(text.value for inner in part.items if (text := _literal(inner)) is not None)
+    return tuple(text.value for inner in part.items if (text := _read_literal(inner)) is not None)
 
 
 def _resolve(python: PythonText, item: Item) -> Item:

@@ -54,7 +54,7 @@ CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals", 
 _ACTIONS = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer", "IncludeLaunchDescription")
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _REMAPPINGS, _PARAMETERS = re.compile(r"(?i)remap"), re.compile(r"(?i)^parameters$|_params$|_parameters$")
-_PAIR, _DEEPEST_LIST = 2, 4
+_PAIR, _MAX_LIST_DEPTH = 2, 4
 _URI = "package://"
 _WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
 
@@ -153,7 +153,7 @@ class PythonLaunchText:
             pairs = [sibling.parts[0] for sibling in outer.group.items if sibling is not outer and sibling.parts]
             first_parts = (pair.items[0].parts[:1] for pair in pairs if isinstance(pair, Group) and pair.items)
             remapped_names = frozenset(part.value for parts in first_parts for part in parts if isinstance(part, Text))
-            programs = self._programs(outer, "remappings")
+            programs = self._list_programs(outer, "remappings")
             first = group.items[0].parts[0] if group.items[0].parts else None
             if item is not group.items[0]:  # This string is the new name.
                 old = first.value if isinstance(first, Text) else ""
@@ -163,24 +163,24 @@ class PythonLaunchText:
             names = (sibling.parts[0] for sibling in group.items if sibling is not item and sibling.parts)
             remapped_names = frozenset(part.value for part in names if isinstance(part, Text))
             return _StringMeaning(
-                "parameter", text, programs=self._programs(outer, "parameters"), excluded_names=remapped_names
+                "parameter", text, programs=self._list_programs(outer, "parameters"), excluded_names=remapped_names
             )
         return None
 
-    def _programs(self, item: Item, keyword: str) -> tuple[NodeProgram, ...]:
+    def _list_programs(self, item: Item, keyword: str) -> tuple[NodeProgram, ...]:
         """Return the programs of the nodes that use a list of remappings or parameters."""
         bound = item
         current: Item | None = item
         while current is not None:
             if current.keyword == keyword and current.group.callee:
-                return (self._program(current.group),)
+                return (self._read_program(current.group),)
             bound, current = current, current.group.parent
         names = {bound.keyword, *(part.value for part in bound.parts[:1] if isinstance(part, Name))}
         users = [call for call in self.python.calls_of(*_ACTIONS) if _names_in(call.argument(keyword)) & names]
-        programs = map(self._program, users or self.python.calls_of(*_ACTIONS))
+        programs = map(self._read_program, users or self.python.calls_of(*_ACTIONS))
         return tuple(dict.fromkeys(program for program in programs if any(program)))
 
-    def _program(self, call: Group) -> NodeProgram:
+    def _read_program(self, call: Group) -> NodeProgram:
         package, executable = (
             next((candidate for candidate in call.items if candidate.keyword in keywords), None)
             for keywords in (_PACKAGE_KEYWORDS, _PROGRAM_KEYWORDS)
@@ -264,7 +264,7 @@ class PythonLaunchText:
 def _is_in_list_named(item: Item, name_pattern: re.Pattern[str]) -> bool:
     """Return whether an item is in a list for an argument or variable with a matching name."""
     current: Item | None = item
-    for _ in range(_DEEPEST_LIST):
+    for _ in range(_MAX_LIST_DEPTH):
         if current is None:
             return False
         words = [current.keyword] + [part.value for part in current.parts[:1] if isinstance(part, Name)]

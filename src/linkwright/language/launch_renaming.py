@@ -94,10 +94,10 @@ class _Search:
             if file in shared:
                 continue
             shared[file] = None
-            for include in self._names(file).includes:
+            for include in self._read_names(file).includes:
                 pending += self._sharing_files(file, include)
             for other, include in includers.get(file, ()):
-                key = self._passed_name(include)
+                key = self._find_passed_name(include)
                 if key is not None:
                     self._edit(key)
                 elif not include.is_known:
@@ -111,7 +111,7 @@ class _Search:
                 elif self._mentions_above(other, includers, {file}):
                     pending.append(other)
         for file in shared:
-            names = self._names(file)
+            names = self._read_names(file)
             for name in names.names:
                 if name.name == self._new:
                     raise UnprovedError(
@@ -126,7 +126,7 @@ class _Search:
 
     def _sharing_files(self, file: Path, include: LaunchInclude) -> Iterator[Path]:
         """Yield the file of an include if it shares the argument."""
-        if self._passed_name(include) is not None:
+        if self._find_passed_name(include) is not None:
             return
         if include.target is None:
             if include.path_text:
@@ -140,19 +140,19 @@ class _Search:
         elif self._mentions_below(include.target, set()):
             yield include.target
 
-    def _mentions(self, file: Path) -> bool:
-        return any(name.name == self._old for name in self._names(file).names)
+    def _mentions_argument(self, file: Path) -> bool:
+        return any(name.name == self._old for name in self._read_names(file).names)
 
     def _mentions_below(self, file: Path, seen_files: set[Path]) -> bool:
         """Return whether a file, or a file that shares its arguments, mentions the argument."""
         if file in seen_files:
             return False
         seen_files.add(file)
-        return self._mentions(file) or any(
+        return self._mentions_argument(file) or any(
             include.target is not None
-            and self._passed_name(include) is None
+            and self._find_passed_name(include) is None
             and self._mentions_below(include.target, seen_files)
-            for include in self._names(file).includes
+            for include in self._read_names(file).includes
         )
 
     def _mentions_above(
@@ -162,23 +162,23 @@ class _Search:
         if file in seen_files:
             return False
         seen_files.add(file)
-        if self._mentions(file):
+        if self._mentions_argument(file):
             return True
         targets = (
             include.target
-            for include in self._names(file).includes
-            if include.target is not None and self._passed_name(include) is None
+            for include in self._read_names(file).includes
+            if include.target is not None and self._find_passed_name(include) is None
         )
         return any(
             self._mentions_below(target, {*seen_files}) for target in targets if target not in seen_files
         ) or any(
-            self._passed_name(include) is None
+            self._find_passed_name(include) is None
             and include.is_known
             and self._mentions_above(other, includers, seen_files)
             for other, include in includers.get(file, ())
         )
 
-    def _passed_name(self, include: LaunchInclude) -> LaunchName | None:
+    def _find_passed_name(self, include: LaunchInclude) -> LaunchName | None:
         return next((name for name in include.passed if name.name == self._old), None)
 
     def _edit(self, name: LaunchName) -> None:
@@ -196,12 +196,12 @@ class _Search:
         includers: dict[Path, list[tuple[Path, LaunchInclude]]] = {}
         files = (file for file in self._project.files(_ENDINGS) if is_launch_file(file))
         for file in islice(files, _MAX_FILES):
-            for include in self._names(file).includes:
+            for include in self._read_names(file).includes:
                 if include.target is not None:
                     includers.setdefault(include.target, []).append((file, include))
         return includers
 
-    def _names(self, file: Path) -> LaunchNames:
+    def _read_names(self, file: Path) -> LaunchNames:
         if file not in self._names_by_file:
             text = self._project.text(file, self._texts) or ""
             is_launch = is_launch_file(file)

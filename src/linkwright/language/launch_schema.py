@@ -20,8 +20,8 @@ def _required(name: str, kind: ValueType, meaning: str) -> AttributeRule:
     return AttributeRule(name, kind, meaning, required=True)
 
 
-def _usual(name: str, kind: ValueType, meaning: str) -> AttributeRule:
-    return AttributeRule(name, kind, meaning, usual=True)
+def _usually_written(name: str, kind: ValueType, meaning: str) -> AttributeRule:
+    return AttributeRule(name, kind, meaning, usually_written=True)
 
 
 _CONDITIONS = (
@@ -31,15 +31,23 @@ _CONDITIONS = (
 
 
 def _element(
-    tag: str, meaning: str, *attributes: AttributeRule, children: tuple[ElementRule, ...] = (), nests: bool = False
+    tag: str,
+    meaning: str,
+    *attributes: AttributeRule,
+    children: tuple[ElementRule, ...] = (),
+    is_recursive: bool = False,
 ) -> ElementRule:
-    return ElementRule(tag, meaning, attributes, children, many=True, nests=nests)
+    return ElementRule(tag, meaning, attributes, children, is_repeated=True, is_recursive=is_recursive)
 
 
 def _action(
-    tag: str, meaning: str, *attributes: AttributeRule, children: tuple[ElementRule, ...] = (), nests: bool = False
+    tag: str,
+    meaning: str,
+    *attributes: AttributeRule,
+    children: tuple[ElementRule, ...] = (),
+    is_recursive: bool = False,
 ) -> ElementRule:
-    return _element(tag, meaning, *attributes, *_CONDITIONS, children=children, nests=nests)
+    return _element(tag, meaning, *attributes, *_CONDITIONS, children=children, is_recursive=is_recursive)
 
 
 def _pair(tag: str, meaning: str, name: str = "the name", value: str = "the value") -> ElementRule:
@@ -73,18 +81,18 @@ _REMAP = _element(
 _PARAM = _element(
     "param",
     "a parameter of the node, a group of parameters, or a file with parameters",
-    _usual("name", _NAME, "the name of the parameter"),
-    _usual("value", _TEXT, "the value, whose type follows from its form as in YAML"),
+    _usually_written("name", _NAME, "the name of the parameter"),
+    _usually_written("value", _TEXT, "the value, whose type follows from its form as in YAML"),
     _one("from", _PATH, "a YAML file with parameters, instead of name and value"),
     _one("type", ValueType("type of a parameter"), "the type of the value, such as str"),
     _one("allow_substs", _TRUTH, "whether the file may contain substitutions", "false"),
     _one("value-sep", _TEXT, "the separator of a list in the value"),
-    nests=True,
+    is_recursive=True,
 )
 _NODE = (
     _required("pkg", ValueType("name of a package"), "the package of the executable"),
     _required("exec", ValueType("name of an executable"), "the executable in the package"),
-    AttributeRule("name", _NAME, "the name of the node", usual=True),
+    AttributeRule("name", _NAME, "the name of the node", usually_written=True),
     _one("namespace", _NAME, "the namespace of the node"),
     *_PROCESS[1:],
     _one("args", _TEXT, "the command line arguments"),
@@ -100,7 +108,7 @@ _COMPOSABLE = _action(
     "a node that the container loads as a component",
     _required("pkg", ValueType("name of a package"), "the package of the component"),
     _required("plugin", ValueType("name of a class"), "the class of the component"),
-    _usual("name", _NAME, "the name of the node"),
+    _usually_written("name", _NAME, "the name of the node"),
     _one("namespace", _NAME, "the namespace of the node"),
     children=(
         _PARAM,
@@ -121,8 +129,10 @@ _PLAIN = (
         "arg",
         "an argument of the launch file, which its caller can set",
         _required("name", _NAME, "the name in $(var NAME)"),
-        _usual("default", _TEXT, "the value if the caller gives none; without a default the argument is required"),
-        _usual("description", _TEXT, "a description for --show-args"),
+        _usually_written(
+            "default", _TEXT, "the value if the caller gives none; without a default the argument is required"
+        ),
+        _usually_written("description", _TEXT, "a description for --show-args"),
         children=(_element("choice", "an allowed value", _required("value", _TEXT, "the value")),),
     ),
     _action(
@@ -228,8 +238,10 @@ _PLAIN = (
         "bool_arg",
         "an argument of the launch file that is true or false",
         _required("name", _NAME, "the name in $(var NAME)"),
-        _usual("default", _TRUTH, "the value if the caller gives none; without a default the argument is required"),
-        _usual("description", _TEXT, "a description for --show-args"),
+        _usually_written(
+            "default", _TRUTH, "the value if the caller gives none; without a default the argument is required"
+        ),
+        _usually_written("description", _TEXT, "a description for --show-args"),
     ),
     _action(
         "log",
@@ -251,7 +263,7 @@ _PLAIN = (
     _action(
         "gz_server",
         "starts Gazebo without a window",
-        _usual("world_sdf_file", _PATH, "the world"),
+        _usually_written("world_sdf_file", _PATH, "the world"),
         _one("world_sdf_string", _TEXT, "the world as text"),
         *_GZ_CONTAINER,
     ),
@@ -309,7 +321,7 @@ def _containers(inner: tuple[ElementRule, ...]) -> tuple[ElementRule, ...]:
             _one("scoped", _TRUTH, "whether settings inside end with the group", "true"),
             _one("forwarding", _TRUTH, "whether settings from outside apply inside", "true"),
             children=(*inner, _pair("keep", "a launch configuration of the group")),
-            nests=True,
+            is_recursive=True,
         ),
         _action("timer", "executes actions after a time", *period, children=inner),
         _action("ros_timer", "executes actions after a time of ROS, which may be simulated", *period, children=inner),

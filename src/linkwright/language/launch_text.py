@@ -14,7 +14,7 @@ from linkwright.packages import PackageFinder
 _WHOLE = re.compile(r"\$\(\s*([\w-]+)(?:\s+([^()]*?))?\s*\)")
 _MARK = re.compile(r"\$\(|\)")
 _WORD = re.compile(r"""(?:\$\((?:[^()]|\$\([^()]*\))*\)|[^\s"'\[\],;])+""")
-_DEEPEST = 8
+_MAX_PASSES = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mappi
             return match[0] if default is None else default
         return match[0]
 
-    for _ in range(_DEEPEST):
+    for _ in range(_MAX_PASSES):
         replaced = _WHOLE.sub(value, text)
         if replaced == text or len(replaced) > len(text) + 10_000:
             break

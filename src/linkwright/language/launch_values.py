@@ -230,7 +230,7 @@ def _plain_completions(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
             yield from _offer_variables(
                 launch, start, _arguments_named(launch.arguments, value.attributes.get("name", ""))
             )
-        yield from offer_values(_choices(launch, value), start)
+        yield from offer_values(_list_choices(launch, value), start)
     elif value.tags[-1] in ("param", "set_parameter") and name == "name":
         yield from _offer_parameters(launch, value)
     yield from _offer_texts(launch, value, offset)
@@ -286,16 +286,18 @@ def _offer_parameters(launch: LaunchText, value: LaunchValue) -> Iterator[Comple
         yield Completion("use_sim_time", ItemKind.NAME, value.start, "bool false")
 
 
-def _choices(launch: LaunchText, value: LaunchValue) -> tuple[str, ...]:
+def _list_choices(launch: LaunchText, value: LaunchValue) -> tuple[str, ...]:
     """Return the likely values of an argument: its choices, or both values of a condition."""
     name = value.attributes.get("name", "")
     if not value.is_included:
-        return likely_values(None, name, launch.document.text) if value.name == "default" else _boolean_choices(name)
+        return (
+            likely_values(None, name, launch.document.text) if value.name == "default" else _list_boolean_choices(name)
+        )
     argument = next((candidate for candidate in launch.included_arguments(value) if candidate.name == name), None)
     return () if argument is None else likely_values(argument, name, launch.document.text)
 
 
-def _boolean_choices(name: str) -> tuple[str, ...]:
+def _list_boolean_choices(name: str) -> tuple[str, ...]:
     return ("true", "false") if name.startswith(("use_", "enable", "is_", "publish_")) else ()
 
 

@@ -100,23 +100,23 @@ _KINDS = {
     "executable": SymbolKind.FUNCTION,
     **dict.fromkeys(("node", "lifecycle_node", "composable_node", "node_container"), SymbolKind.NODE),
 }
-_DEEPEST = 50
+_MAX_DEPTH = 50
 """The maximum depth of symbols."""
 _NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
 
 
-def _symbols(document: Document) -> Iterator[Symbol]:
-    return (_symbol(element, 0) for element in Outline.of(document.text).elements)
+def _list_symbols(document: Document) -> Iterator[Symbol]:
+    return (_make_symbol(element, 0) for element in Outline.of(document.text).elements)
 
 
-def _symbol(element: OutlineElement, depth: int) -> Symbol:
+def _make_symbol(element: OutlineElement, depth: int) -> Symbol:
     attributes = _attribute_values(element.tag)
     identifier = next((attributes[name] for name in _NAMING if attributes.get(name)), "")
     kind = _KINDS.get(element.tag.name, SymbolKind.OBJECT)
-    children = tuple(_symbol(child, depth + 1) for child in element.children) if depth < _DEEPEST else ()
+    children = tuple(_make_symbol(child, depth + 1) for child in element.children) if depth < _MAX_DEPTH else ()
     name = f"{element.tag.name} {identifier}".strip()
     return Symbol(name, kind, element.tag.start, element.end, children, attributes.get("pkg", ""))
 
 
-LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)
+LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _list_symbols, prepare=substitution_names)
 """Launch files in XML."""

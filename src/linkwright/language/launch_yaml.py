@@ -26,7 +26,7 @@ from linkwright.schema import describe_attribute, describe_element
 _CHILDREN = "children"
 """The key of the actions in a timer or a loop."""
 _NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
-_DEEPEST = 20
+_MAX_DEPTH = 20
 
 
 def is_yaml_launch_file(path: Path) -> bool:
@@ -152,7 +152,7 @@ def _symbols(document: Document) -> Iterator[Symbol]:
 
 
 def _actions(entry: YamlEntry, depth: int) -> Iterator[Symbol]:
-    for child in entry.children if depth < _DEEPEST else ():
+    for child in entry.children if depth < _MAX_DEPTH else ():
         if child.is_item:
             yield from _actions(child, depth + 1)
         elif child.children:

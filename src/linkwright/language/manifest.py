@@ -79,7 +79,7 @@ def _single_children(text: str, offset: int) -> set[str]:
     if rule is None or not ancestors:
         return set()
     names = {child.tag.name for child in ancestors[-1].children if not child.tag.start < offset <= child.tag.end}
-    return {name for name in names if name in rule.child_rules and not rule.child_rules[name].many}
+    return {name for name in names if name in rule.child_rules and not rule.child_rules[name].is_repeated}
 
 
 def _text_completions(document: Document, tag: str, start: int) -> Iterator[Completion]:
@@ -101,8 +101,8 @@ def _dependency_completions(document: Document, tag: str, start: int) -> Iterato
     others = document.text[:start] + document.text[start:].partition("<")[2]
     declared_names = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}
     used_names = used_packages(document.file.parent) if tag in ("depend", "exec_depend") else []
-    usual: Iterable[str] = (*used_names, *_COMMON_DEPENDENCIES.get(tag, ()))
-    for name in usual:
+    common_names: Iterable[str] = (*used_names, *_COMMON_DEPENDENCIES.get(tag, ()))
+    for name in common_names:
         if name not in declared_names:
             declared_names.add(name)
             yield Completion(name, ItemKind.PACKAGE, start)

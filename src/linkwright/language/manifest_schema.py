@@ -35,7 +35,7 @@ USED_DEPENDENCIES = frozenset(_MEANINGS)
 def _value(
     tag: str, meaning: str, *attributes: AttributeRule, kind: ValueType = _TEXT, is_repeated: bool = False
 ) -> ElementRule:
-    return ElementRule(tag, meaning, attributes, many=is_repeated, text=AttributeRule("text", kind, meaning))
+    return ElementRule(tag, meaning, attributes, is_repeated=is_repeated, text=AttributeRule("text", kind, meaning))
 
 
 _EXPORT = ElementRule(
@@ -56,7 +56,7 @@ _EXPORT = ElementRule(
                 AttributeRule("gazebo_media_path", _TEXT, "the folder of media, such as ${prefix}"),
                 AttributeRule("plugin_path", _TEXT, "the folder of plugins, such as ${prefix}/lib"),
             ),
-            many=True,
+            is_repeated=True,
         ),
     ),
 )

@@ -120,9 +120,9 @@ def _in_path(value: str, text: str, begin: int, file: Path, names: frozenset[str
     """Yield the names in a value with slashes, such as ``left_wheel_joint/velocity``."""
     parts = value.split("/")
     start = text.find(value, begin, begin + len(value) + 2)
-    for number, part in enumerate(parts):
+    for index, part in enumerate(parts):
         if part in names and start >= 0:
-            is_joint = number == 0 and len(parts) == 2 and parts[1] in _INTERFACES
+            is_joint = index == 0 and len(parts) == 2 and parts[1] in _INTERFACES
             yield Mention(part, file, start, (NameKind.JOINT,) if is_joint else ())
         start += len(part) + 1
 

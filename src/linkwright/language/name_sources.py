@@ -26,7 +26,7 @@ from linkwright.xmltree.tokens import Kind, tokens
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 _ARGUMENT = re.compile(r"arg\s+(\S+)\s*")
 _OPTIONAL = re.compile(r"\$\(optenv\s+\S+\s+([^()]*?)\s*\)")
-_DEEPEST = 12
+_MAX_DEPTH = 12
 _MAX_EXPRESSIONS = 8
 
 
@@ -123,10 +123,10 @@ class NameSources:
             value: its present value.
             new: its new value.
         """
-        yield from self._edits(source, value, new, 0)
+        yield from self._generate_edits(source, value, new, 0)
 
-    def _edits(self, source: SourceValue, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
-        if value == new or depth > _DEEPEST:
+    def _generate_edits(self, source: SourceValue, value: str, new: str, depth: int) -> Iterator[tuple[Edit, ...]]:
+        if value == new or depth > _MAX_DEPTH:
             return
         if source.is_literal:
             if source.text == value:
@@ -136,14 +136,14 @@ class NameSources:
         expressions = [part for part in parts if part.kind is not TokenKind.TEXT]
         if not parts or len(expressions) > _MAX_EXPRESSIONS:
             return
-        yield from self._literal_edits(source, parts, value, new)
-        yield from self._expression_edits(source, parts, value, new, depth)
+        yield from self._generate_literal_edits(source, parts, value, new)
+        yield from self._generate_expression_edits(source, parts, value, new, depth)
 
-    def _literal_edits(
+    def _generate_literal_edits(
         self, source: SourceValue, parts: Sequence[Token], value: str, new: str
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits of the literal parts that give the new value, with equal expressions."""
-        values = self._values(source, parts, value)
+        values = self._match_values(source, parts, value)
         if values is None:
             return
         new_template = "".join(
@@ -163,11 +163,11 @@ class NameSources:
         if edits and all(edit.text for edit in edits):
             yield tuple(edits)
 
-    def _expression_edits(
+    def _generate_expression_edits(
         self, source: SourceValue, parts: Sequence[Token], value: str, new: str, depth: int
     ) -> Iterator[tuple[Edit, ...]]:
         """Yield the edits that change the value of one expression, which may occur repeatedly."""
-        values = self._values(source, parts, value)
+        values = self._match_values(source, parts, value)
         if values is None:
             return
         expressions = [
@@ -185,13 +185,13 @@ class NameSources:
             matched = re.fullmatch("".join(pieces), new, re.DOTALL)
             part, text = next(pair for pair in expressions if pair[0].text == changed)
             if matched is not None:
-                for origin in self._sources(part, source.frame):
-                    yield from self._edits(origin, text, matched["new"], depth + 1)
+                for origin in self._find_sources(part, source.frame):
+                    yield from self._generate_edits(origin, text, matched["new"], depth + 1)
 
-    def _values(self, source: SourceValue, parts: Sequence[Token], value: str) -> list[str] | None:
+    def _match_values(self, source: SourceValue, parts: Sequence[Token], value: str) -> list[str] | None:
         """Return the values of the parts of a text, or None if they do not fit its value."""
         known_values = [
-            part.text if part.kind is TokenKind.TEXT else self._value(part, source.frame, 0) for part in parts
+            part.text if part.kind is TokenKind.TEXT else self._find_value(part, source.frame, 0) for part in parts
         ]
         pattern = "".join("(.*?)" if text is None else f"({re.escape(text)})" for text in known_values)
         match = re.fullmatch(pattern, value, re.DOTALL)
@@ -200,29 +200,29 @@ class NameSources:
             match = re.fullmatch(loose, value, re.DOTALL)
         return None if match is None else [*match.groups()]
 
-    def _value(self, part: Token, frame: Frame | None, depth: int) -> str | None:
+    def _find_value(self, part: Token, frame: Frame | None, depth: int) -> str | None:
         """Return the value of a name in an expression if literal texts define it, or None."""
-        source = next(self._sources(part, frame), None) if depth <= _DEEPEST else None
+        source = next(self._find_sources(part, frame), None) if depth <= _MAX_DEPTH else None
         if source is None:
             return None
         values = [
-            inner.text if inner.kind is TokenKind.TEXT else self._value(inner, source.frame, depth + 1)
+            inner.text if inner.kind is TokenKind.TEXT else self._find_value(inner, source.frame, depth + 1)
             for inner in _parts(source.text)
         ]
         return "".join(text for text in values if text is not None) if None not in values else None
 
-    def _sources(self, part: Token, frame: Frame | None) -> Iterator[SourceValue]:
+    def _find_sources(self, part: Token, frame: Frame | None) -> Iterator[SourceValue]:
         """Yield the texts from which an expression may get its value."""
         if part.kind is TokenKind.EXPRESSION:
             name = _NAME.fullmatch(part.text)
             if name is not None:
-                yield from self._sources_of_name(name[1], frame)
+                yield from self._find_sources_of_name(name[1], frame)
             return
         argument = _ARGUMENT.fullmatch(part.text)
         if argument is not None:
             yield from self._attributes("xacro:arg", argument[1], "default")
 
-    def _sources_of_name(self, name: str, frame: Frame | None) -> Iterator[SourceValue]:
+    def _find_sources_of_name(self, name: str, frame: Frame | None) -> Iterator[SourceValue]:
         while frame is not None:
             source = frame.site.source
             value_range = None if source is None else attribute_value_range(source.text, frame.site.offset, name)

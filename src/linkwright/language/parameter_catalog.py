@@ -103,7 +103,7 @@ def yaml_text(value: Any) -> str:
 
 
 @cache
-def _table() -> Mapping[str, Any]:
+def _load_table() -> Mapping[str, Any]:
     text = resources.files("linkwright.language").joinpath(_FILE).read_text(encoding="utf-8")
     table: Mapping[str, Any] = json.loads(text)
     return table
@@ -127,13 +127,13 @@ def _infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[Paramete
 @cache
 def node_names() -> tuple[str, ...]:
     """Return the names of the nodes with known parameters."""
-    return tuple(_table()["nodes"])
+    return tuple(_load_table()["nodes"])
 
 
 @lru_cache(maxsize=64)
 def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
     """Return the parameters of a node by its name, or an empty tuple if it is unknown."""
-    return _infos(_table()["nodes"].get(node, {}), node)
+    return _infos(_load_table()["nodes"].get(node, {}), node)
 
 
 @cache
@@ -143,7 +143,7 @@ def plugins() -> Mapping[str, Plugin]:
         kind.replace("::", "/"): Plugin(
             kind, entry["node"], entry["listed"], entry["purpose"], _infos(entry["parameters"], kind)
         )
-        for kind, entry in _table()["plugins"].items()
+        for kind, entry in _load_table()["plugins"].items()
     }
 
 
@@ -181,14 +181,14 @@ def controller_parameters(kind: str, names: Collection[str] = ()) -> tuple[Param
         kind: the type name.
         names: the names of the parameters that are set, which distinguish controllers with the same type name.
     """
-    controller = _controller(kind)
+    controller = _find_controller(kind)
     if controller is None:
         return ()
-    return _controller_table(controller.variant(names), kind)
+    return _list_controller_parameters(controller.variant(names), kind)
 
 
 @cache
-def _controller_table(controller: Any, kind: str) -> tuple[ParameterInfo, ...]:
+def _list_controller_parameters(controller: Any, kind: str) -> tuple[ParameterInfo, ...]:
     from linkwright.nodes.parameter_tables import entries  # imported here because it loads the graph
 
     return tuple(
@@ -207,11 +207,11 @@ def _controller_table(controller: Any, kind: str) -> tuple[ParameterInfo, ...]:
 
 def controller_purpose(kind: str) -> str | None:
     """Return the first paragraph about a controller type, or None if it is unavailable."""
-    controller = _controller(kind)
+    controller = _find_controller(kind)
     return None if controller is None else cleandoc(controller.__doc__ or "").partition("\n\n")[0]
 
 
-def _controller(kind: str) -> Any:
+def _find_controller(kind: str) -> Any:
     if kind not in extensions(_CONTROLLERS):
         return None
     from linkwright.control.controllers.registry import controller_class

@@ -53,13 +53,17 @@ def complete_parameters(document: Document, offset: int) -> list[Completion]:
     items: Iterable[Completion]
     if cursor.position is YamlPosition.KEY:
         colon = "" if has_colon(document.text, offset) else ":"
-        items = _node_keys(outline, cursor, colon) if section is None else _keys(document, section, cursor, colon)
+        items = (
+            _offer_node_keys(outline, cursor, colon)
+            if section is None
+            else _offer_parameters(document, section, cursor, colon)
+        )
     else:
         items = () if section is None else parameter_values(document, section, cursor)
     return by_typed(items, cursor.typed)
 
 
-def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+def _offer_node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     """Yield the keys outside ``ros__parameters``: nodes, and ``ros__parameters`` itself."""
     others = [child for child in cursor.parent_entry.children if child is not cursor.entry]
     present = {child.key for child in others}
@@ -69,24 +73,30 @@ def _node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator
     body, parent_key = f"{PARAMETERS}:\n    $0", cursor.parent_entry.key
     if not is_top:
         if parent_key in _COSTMAPS and len(cursor.parent_entry.path) == 1 and not present:
-            yield _key(cursor, parent_key, "node", "", colon and f"{parent_key}:\n  {body}")
+            yield _make_key_completion(cursor, parent_key, "node", "", colon and f"{parent_key}:\n  {body}")
         if PARAMETERS not in present:
             text = phrase("the parameters of the node")
-            yield _key(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
+            yield _make_key_completion(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
         if "ros__parameters" in present:
             return
     if is_top and "/**" not in present:
         text = phrase("parameters of all nodes")
-        yield _key(cursor, "/**", "", text, colon and f"/**:\n  {body}")
+        yield _make_key_completion(cursor, "/**", "", text, colon and f"/**:\n  {body}")
     for name, kind in declared_controllers(outline).items():
         if name not in present:
-            yield _key(cursor, name, kind, controller_purpose(kind) or "", colon and f"{name}:\n  {body}")
+            yield _make_key_completion(
+                cursor, name, kind, controller_purpose(kind) or "", colon and f"{name}:\n  {body}"
+            )
     for name in node_names():
         if name not in present:
-            yield _key(cursor, name, "node", _names_of(node_parameters(name)), colon and f"{name}:\n  {body}")
+            yield _make_key_completion(
+                cursor, name, "node", _names_of(node_parameters(name)), colon and f"{name}:\n  {body}"
+            )
 
 
-def _key(cursor: YamlCursor, label: str, detail: str, description: str | Phrase, snippet: str) -> Completion:
+def _make_key_completion(
+    cursor: YamlCursor, label: str, detail: str, description: str | Phrase, snippet: str
+) -> Completion:
     return Completion(label, ItemKind.ATTRIBUTE, cursor.start, detail, description, snippet)
 
 
@@ -94,14 +104,14 @@ def _names_of(parameters: Iterable[ParameterInfo]) -> str:
     return ", ".join(f"`{parameter.name}`" for parameter in parameters)
 
 
-def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+def _offer_parameters(document: Document, section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     """Yield the parameters and groups at a position in ``ros__parameters``."""
     present = {child.key for child in cursor.parent_entry.children if child is not cursor.entry}
     if section.is_manager:
-        yield from _manager_keys(section, cursor, colon)
+        yield from _offer_manager_keys(section, cursor, colon)
     prefix_parts = section.prefix.split(".") if section.prefix else []
-    yield from _plugin_keys(section, cursor, colon, present)
-    yield from _keys_in_sources(document, section, cursor, colon, present)
+    yield from _offer_plugin_keys(section, cursor, colon, present)
+    yield from _offer_parameters_of_sources(document, section, cursor, colon, present)
     groups: dict[str, list[str]] = {}
     dotted: list[Completion] = []
     for parameter in sorted(section.parameters(), key=lambda parameter: bool(_NUMBERED.match(parameter.name))):
@@ -112,13 +122,13 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
         first_names = _names_for(document, section, parameter) if remaining_parts[0] == "*" else [remaining_parts[0]]
         for first in first_names:
             if len(remaining_parts) == 1 and first not in present:
-                yield _parameter_key(cursor, first, parameter, colon)
+                yield _make_parameter_completion(cursor, first, parameter, colon)
             elif len(remaining_parts) > 1:
                 groups.setdefault(first, []).append(".".join(remaining_parts[1:]))
                 name = ".".join([first, *remaining_parts[1:]])
                 if "*" not in name and name not in present:
-                    dotted.append(_parameter_key(cursor, name, parameter, colon))
-    yield from _keys_elsewhere(document, section, cursor, colon, present)
+                    dotted.append(_make_parameter_completion(cursor, name, parameter, colon))
+    yield from _offer_keys_of_other_files(document, section, cursor, colon, present)
     uses_dots = any("." in name for name in present)
     yield from dotted if uses_dots else ()
     for name, inner_names in groups.items():
@@ -128,7 +138,7 @@ def _keys(document: Document, section: Section, cursor: YamlCursor, colon: str) 
     yield from dotted
 
 
-def _keys_in_sources(
+def _offer_parameters_of_sources(
     document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
 ) -> Iterator[Completion]:
     """Yield the parameters that the sources of a node of the workspace declare."""
@@ -140,10 +150,12 @@ def _keys_in_sources(
                 detail = f"{parameter.type} = {parameter.default}" if parameter.default else parameter.type
                 end = ":\n  $0" if remainder else ": $0"
                 snippet = colon and snippet_text(first) + end
-                yield _key(cursor, first, "" if remainder else detail, f"`{parameter.file.name}`", snippet)
+                yield _make_key_completion(
+                    cursor, first, "" if remainder else detail, f"`{parameter.file.name}`", snippet
+                )
 
 
-def _keys_elsewhere(
+def _offer_keys_of_other_files(
     document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
 ) -> Iterator[Completion]:
     """Yield the keys at this position in other parameter files, for an unknown node."""
@@ -159,10 +171,10 @@ def _keys_elsewhere(
                 if child.key and child.key not in present:
                     detail = f"{file.name}: {child.value[:40]}" if child.value else file.name
                     end = ":\n  $0" if child.children else ": $0"
-                    yield _key(cursor, child.key, detail, "", colon and snippet_text(child.key) + end)
+                    yield _make_key_completion(cursor, child.key, detail, "", colon and snippet_text(child.key) + end)
 
 
-def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, present: set[str]) -> Iterator[Completion]:
+def _offer_plugin_keys(section: Section, cursor: YamlCursor, colon: str, present: set[str]) -> Iterator[Completion]:
     """Yield the listed plugins without a section, or the key ``plugin`` in such a section."""
     entries = section.entries()
     for list_parameter in dict.fromkeys(plugin.list_parameter for plugin in plugins().values()):
@@ -170,14 +182,16 @@ def _plugin_keys(section: Section, cursor: YamlCursor, colon: str, present: set[
         names = [] if entry is None else [text for text, _ in entry.items()] or [entry.scalar]
         if section.prefix in names and "plugin" not in present:
             text = phrase("the type of the plugin")
-            yield _key(cursor, "plugin", "string", text, colon and "plugin: $0")
+            yield _make_key_completion(cursor, "plugin", "string", text, colon and "plugin: $0")
         if not section.prefix and (not section.node or plugin_types(section.node, list_parameter)):
             for name in names:
                 if name and name not in present:
-                    yield _key(cursor, name, list_parameter, "", colon and f"{snippet_text(name)}:\n  plugin: $0")
+                    yield _make_key_completion(
+                        cursor, name, list_parameter, "", colon and f"{snippet_text(name)}:\n  plugin: $0"
+                    )
 
 
-def _parameter_key(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:
+def _make_parameter_completion(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:
     default = parameter.written_default
     detail = f"{parameter.type} = {default}" if default else parameter.type
     value = f"${{1:{snippet_text(default)}}}" if default and len(default) <= 40 else "$0"
@@ -223,11 +237,11 @@ def _names_for(document: Document, section: Section, parameter: ParameterInfo) -
     return [name.name for name in parts if name.kind is NameKind.JOINT and name.detail != "fixed"]
 
 
-def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
+def _offer_manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
     if section.prefix:
         if "." not in section.prefix and cursor.parent_entry.child("type") in (None, cursor.entry):
             text = phrase("the type of the controller")
-            yield _key(cursor, "type", "string", text, colon and "type: $0")
+            yield _make_key_completion(cursor, "type", "string", text, colon and "type: $0")
         return
     present = {child.key for child in cursor.parent_entry.children}
     for kind in dict.fromkeys((*_USUAL_CONTROLLERS, *controller_types())):
@@ -236,4 +250,4 @@ def _manager_keys(section: Section, cursor: YamlCursor, colon: str) -> Iterator[
             package = re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
         if package not in present:
             snippet = colon and f"{package}:\n  type: {kind}"
-            yield _key(cursor, package, kind, controller_purpose(kind) or "", snippet)
+            yield _make_key_completion(cursor, package, kind, controller_purpose(kind) or "", snippet)

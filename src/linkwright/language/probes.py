@@ -47,32 +47,32 @@ def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
     )
 
 
-def probes_of(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> dict[Path, str]:
+def generate_probes(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> dict[Path, str]:
     """Return generated texts that call the macro around a name, by their path.
 
     Returns an empty dictionary outside macros.
 
     Args:
-        project: the workspace.
+        workspace: the workspace.
         texts: the texts of the open files.
         name: the name.
     """
-    text = project.text(name.file, texts) or ""
+    text = workspace.text(name.file, texts) or ""
     element = innermost_element(source_elements(text), name.start)
     macro = None if element is None else element if element.name == "xacro:macro" else element.macro
-    if macro is None or macro.macro is not None or not project.contains(real_path(name.file)):
+    if macro is None or macro.macro is not None or not workspace.contains(real_path(name.file)):
         return {}
-    calls = [*dict.fromkeys(_calls(macro))]
+    calls = [*dict.fromkeys(_generate_calls(macro))]
     return {
-        name.file.parent / f".linkwright-probe-{number}.urdf.xacro": (
+        name.file.parent / f".linkwright-probe-{index}.urdf.xacro": (
             f'<robot name="probe" xmlns:xacro="{_XACRO}">\n'
             f"  <xacro:include filename={quoteattr(name.file.name)}/>\n{call}\n</robot>\n"
         )
-        for number, call in enumerate(calls)
+        for index, call in enumerate(calls)
     }
 
 
-def _calls(macro: SourceElement) -> Iterator[str]:
+def _generate_calls(macro: SourceElement) -> Iterator[str]:
     called = macro.value("name").removeprefix("xacro:")
     try:
         parameters = parse_parameters(macro.value("params"))
@@ -80,7 +80,7 @@ def _calls(macro: SourceElement) -> Iterator[str]:
         return
     if not called or "$" in called:
         return
-    blocks = "".join(map(_block, parameters))
+    blocks = "".join(map(_generate_block, parameters))
     for value in _VALUES:
         arguments = "".join(
             f" {parameter.name}={quoteattr(value)}"
@@ -90,7 +90,8 @@ def _calls(macro: SourceElement) -> Iterator[str]:
         yield f"  <xacro:{called}{arguments}>{blocks}</xacro:{called}>"
 
 
-def _block(parameter: Parameter) -> str:
+def _generate_block(parameter: Parameter) -> str:
+    """Return an element for a block parameter. The macro inserts the children of an element for ``**name``."""
     if not parameter.is_block or parameter.default is not None:
         return ""
     if parameter.name.startswith("**"):

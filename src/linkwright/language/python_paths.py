@@ -24,7 +24,7 @@ _WRAPPERS = frozenset(
     }
 )
 """The functions whose value is the value of their first argument."""
-_DEEPEST = 30
+_MAX_DEPTH = 30
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class PythonPaths:
 
     def value_of(self, item: Item | None) -> Value | None:
         """Return the value of an item, or None if it is unknown."""
-        return None if item is None else self._value(item.parts, 0)
+        return None if item is None else self._join_parts(item.parts, 0)
 
     def text_of(self, item: Item | None) -> str | None:
         """Return the text of an item, or None if it is a path or unknown."""
@@ -79,7 +79,7 @@ class PythonPaths:
         number = next((index for index, part in enumerate(item.parts) if part is text), 0)
         head = item.parts[:number]
         if head and isinstance(head[-1], Operator) and head[-1].value in ("/", "+"):
-            value = self._value(head[:-1], 0)
+            value = self._join_parts(head[:-1], 0)
             joint = "/" if head[-1].value == "/" else ""
             return None if value is None else Value(value.text + joint, value.is_path)
         if head:
@@ -98,20 +98,20 @@ class PythonPaths:
             return self._concatenated([self.value_of(other) for other in group.items[: group.items.index(item)]])
         return None
 
-    def _value(self, parts: Sequence[Part], depth: int) -> Value | None:
+    def _join_parts(self, parts: Sequence[Part], depth: int) -> Value | None:
         """Return the value of terms that are joined by ``+``, ``/`` or nothing."""
-        if depth > _DEEPEST or not parts:
+        if depth > _MAX_DEPTH or not parts:
             return None
         value: Value | None = None
         mark = ""
-        for number, part in enumerate(parts):
+        for index, part in enumerate(parts):
             if isinstance(part, Operator):
-                if part.value not in ("+", "/") or number == 0:
+                if part.value not in ("+", "/") or index == 0:
                     return None
                 mark = part.value
                 continue
             term = self._term(part, depth)
-            if value is None and number > 0:
+            if value is None and index > 0:
                 return None
             if term is None:
                 return None
@@ -130,7 +130,7 @@ class PythonPaths:
         return Value("".join(value.text for value in values if value), bool(values[0] and values[0].is_path))
 
     def _join(self, items: Sequence[Item], depth: int) -> Value | None:
-        values = [self._value(item.parts, depth + 1) for item in items]
+        values = [self._join_parts(item.parts, depth + 1) for item in items]
         if not values or any(value is None for value in values):
             return None
         pieces = [value.text for value in values if value is not None]
@@ -141,37 +141,37 @@ class PythonPaths:
         if isinstance(part, Text):
             return None if part.is_format and "{" in part.value else Value(part.value)
         if isinstance(part, Name):
-            return self._variable_value(part.value, depth)
+            return self._evaluate_variable(part.value, depth)
         return self._group(part, depth) if isinstance(part, Group) else None
 
-    def _variable_value(self, name: str, depth: int) -> Value | None:
+    def _evaluate_variable(self, name: str, depth: int) -> Value | None:
         if name == "__file__":
             return Value(str(self._file), is_path=True)
         bound = self._python.bindings.get(name)
-        return None if bound is None else self._value(bound.parts, depth + 1)
+        return None if bound is None else self._join_parts(bound.parts, depth + 1)
 
     def _group(self, group: Group, depth: int) -> Value | None:
         items = [item for item in group.items if item.parts]
         function = group.function
         if function in PACKAGE_FUNCTIONS:
-            package = self._value((group.argument("package", 0) or Item(group, 0)).parts, depth + 1)
+            package = self._join_parts((group.argument("package", 0) or Item(group, 0)).parts, depth + 1)
             share = None if package is None else self._finder.find(package.text)
             return None if share is None or function in _PREFIXES else Value(str(share), is_path=True)
         if function == "LaunchConfiguration" and items:
-            name = self._value(items[0].parts, depth + 1)
+            name = self._join_parts(items[0].parts, depth + 1)
             default = None if name is None else self._defaults.get(name.text)
             return None if default is None else Value(default)
         if function == "ThisLaunchFileDir":
             return Value(str(self._file.parent), is_path=True)
         if function == "dirname" and items:
-            inner = self._value(items[0].parts, depth + 1)
+            inner = self._join_parts(items[0].parts, depth + 1)
             return None if inner is None else Value(str(Path(inner.text).parent), inner.is_path)
         if function == "PathJoinSubstitution" and items and isinstance(items[0].parts[0], Group):
             return self._join([item for item in items[0].parts[0].items if item.parts], depth)
         if function in JOINS:
             return self._join(items, depth)
         if (function in _WRAPPERS or (not group.callee and group.opening == "(")) and items:
-            return self._value(items[0].parts, depth + 1)
+            return self._join_parts(items[0].parts, depth + 1)
         if group.opening == "[" and not group.callee:
-            return self._concatenated([self._value(item.parts, depth + 1) for item in items])
+            return self._concatenated([self._join_parts(item.parts, depth + 1) for item in items])
         return None

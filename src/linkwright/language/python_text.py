@@ -96,9 +96,9 @@ class Item:
     @property
     def after_colon(self) -> list[Part]:
         """The parts after the first colon, such as a dictionary value, or all without a colon."""
-        for number, part in enumerate(self.parts):
+        for index, part in enumerate(self.parts):
             if isinstance(part, Operator) and part.value == ":":
-                return self.parts[number + 1 :]
+                return self.parts[index + 1 :]
         return self.parts
 
 

@@ -20,7 +20,7 @@ from linkwright.language.grammar import root_of
 from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence, occurrences_in
-from linkwright.language.probes import is_reached, probes_of
+from linkwright.language.probes import generate_probes, is_reached
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
 from linkwright.language.robot_renaming import ROBOT_NAME_KINDS, RobotRenaming
 from linkwright.language.workspace import Workspace
@@ -118,7 +118,9 @@ def _proved_edits(project: Workspace, texts: Mapping[Path, str], name: Occurrenc
     """Return the edits of the occurrences of a name, and the edits that follow from them."""
     proof = ExpansionProof(project, texts, name.file, is_partial=True)
     notes: list[Phrase] = []
-    probes = {} if is_reached(proof, project.text(name.file, texts) or "", name) else probes_of(project, texts, name)
+    probes = (
+        {} if is_reached(proof, project.text(name.file, texts) or "", name) else generate_probes(project, texts, name)
+    )
     if probes:  # No expansion contains the name, so generated calls of its macro are compared.
         texts = {**texts, **probes}
         proof = ExpansionProof(project, texts, name.file, is_partial=True)

@@ -60,10 +60,10 @@ def robot_names(document: Document) -> list[NameDefinition]:
     """
     robots: list[_Robot] = []
     begin = time.monotonic()
-    for entry in _likely_robots(document):
+    for entry in _list_likely_robots(document):
         if time.monotonic() - begin > _MAX_SECONDS:
             break  # The next request continues the expansion.
-        robot = _robot(document, entry)
+        robot = _find_robot(document, entry)
         if robot is not None:
             robots.append(robot)
         elif not robots:
@@ -85,7 +85,7 @@ def part_names(document: Document) -> list[NameDefinition]:
     for entry in dict.fromkeys((*entries, document.file)):
         if entry == document.file and entry not in entries and any(robot.is_expanded for robot in robots):
             continue  # The file alone counts only if no description that includes it can be expanded.
-        robot = _robot(document, entry)
+        robot = _find_robot(document, entry)
         if robot is None:
             raise NotYetKnownError
         robots.append(robot)
@@ -106,7 +106,7 @@ def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
     cache = _robots.get(document.project, {})
     counts = {
         entry: len({name.name for name in cache[entry].names} & {*words})
-        for entry in _likely_robots(document)
+        for entry in _list_likely_robots(document)
         if entry in cache
     }
     return sorted((entry for entry, count in counts.items() if count), key=lambda entry: -counts[entry])
@@ -120,7 +120,7 @@ def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
     return list(names.values())
 
 
-def _robot(document: Document, entry: Path) -> _Robot | None:
+def _find_robot(document: Document, entry: Path) -> _Robot | None:
     """Return the names of a description, or None if they are unknown and must not be waited for."""
     cache = _robots.setdefault(document.project, {})
     robot = cache.get(entry)
@@ -132,11 +132,11 @@ def _robot(document: Document, entry: Path) -> _Robot | None:
         if len(cache) > _MAX_STORED:
             del cache[next(iter(cache))]
     elif robot is not None:
-        document.refreshes.append(partial(_robot, replace(document, waits=True), entry))
+        document.refreshes.append(partial(_find_robot, replace(document, waits=True), entry))
     return robot
 
 
-def _likely_robots(document: Document) -> list[Path]:
+def _list_likely_robots(document: Document) -> list[Path]:
     """Return the top-level descriptions, sorted by their relation to the file's package."""
     file = document.file
     package = enclosing_package(file.parent)
@@ -162,35 +162,35 @@ def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, cached: _R
         entry: the description.
         cached: its earlier names, or None.
     """
-    robot = _expanded_robot(project, texts, entry)
+    robot = _expand_robot(project, texts, entry)
     if robot is not None:
         return robot
     related = dict.fromkeys((entry, *project.index.related_files(entry, texts)))
     state = _state([*map(str, related), *(path for path, _ in (() if cached is None else cached.state))], texts)
     if cached is not None and cached.is_expanded:
         return replace(cached, state=state)
-    saved = _expanded_robot(project, {}, entry) if texts else None
+    saved = _expand_robot(project, {}, entry) if texts else None
     if saved is not None:
         return replace(saved, state=state)
     parts = valid_parts(project, texts, entry)
     if parts is not None:
-        return _robot_of_expansion(parts, state, is_complete=False)
+        return _make_robot(parts, state, is_complete=False)
     text = project.text(entry, texts) or ""
     literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
     return _Robot(state, tuple(name for name in literal if name.kind in _KINDS.values()), is_expanded=False)
 
 
-def _expanded_robot(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
+def _expand_robot(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
     """Return the names in the first expansion without errors, or None if there is none."""
     overlay = Overlay({str(path): text for path, text in texts.items()})
     for arguments, _ in project.argument_calls(entry)[:_MAX_ARGUMENT_SETS]:
         with suppress(LinkwrightError, OSError, RecursionError):
             expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
-            return _robot_of_expansion(expansion, _state(map(str, expansion.dependencies), texts))
+            return _make_robot(expansion, _state(map(str, expansion.dependencies), texts))
     return None
 
 
-def _robot_of_expansion(expansion: Expansion, state: _State, *, is_complete: bool = True) -> _Robot:
+def _make_robot(expansion: Expansion, state: _State, *, is_complete: bool = True) -> _Robot:
     names: list[NameDefinition] = []
     for element in expansion.document.root.elements():
         kind, name = _KINDS.get(element.tag), element.attributes.get("name")

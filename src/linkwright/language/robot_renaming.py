@@ -110,7 +110,7 @@ class RobotRenaming:
         if "$" not in name.name:
             return {(self._kind(), name.name): self._new}
         required: dict[tuple[NameKind, str], str] = {}
-        for value in self._expanded_values():
+        for value in self._list_expanded_names():
             new = renamed_template(name.name, self._new, value)
             if new is not None and new != value and self._defines(name.kind, value):
                 required[name.kind, value] = new
@@ -131,7 +131,7 @@ class RobotRenaming:
             for element in _definitions(trial.expansion.document.root, kind)
         )
 
-    def _expanded_values(self) -> Iterator[str]:
+    def _list_expanded_names(self) -> Iterator[str]:
         """Yield the values of the name in the expansions."""
         files = self._proof.names_of(self._name.file)
         for trial in self._proof.trials:
@@ -243,8 +243,8 @@ class RobotRenaming:
                 if not is_name and not (key == "name" and _is_derived(old, new, allowed)):
                     raise UnprovedError(phrase("'{old}' would become '{new}'", old=old, new=new))
             for kind in ROBOT_NAME_KINDS[:2]:
-                count = len({*_values(pair.after, kind)})
-                if count != len([*_values(pair.after, kind)]) and count != len({*_values(pair.before, kind)}):
+                count = len({*_list_names(pair.after, kind)})
+                if count != len([*_list_names(pair.after, kind)]) and count != len({*_list_names(pair.before, kind)}):
                     raise UnprovedError(phrase("two {kind}s would have the same name", kind=term(kind.value)))
 
     def _check_sharing(self, pairs: Sequence[ExpansionPair], required: Names) -> None:
@@ -253,7 +253,7 @@ class RobotRenaming:
             pair.entry
             for pair in pairs
             for kind, old in required
-            for value in _values(pair.before, kind)
+            for value in _list_names(pair.before, kind)
             if value == old
         }
         for pair in pairs:
@@ -298,7 +298,7 @@ def _is_definition(root: Element, element: Element) -> bool:
     return element.tag in ("link", "joint") and any(child is element for child in root.children)
 
 
-def _values(root: Element, kind: NameKind) -> Iterator[str]:
+def _list_names(root: Element, kind: NameKind) -> Iterator[str]:
     return (element.attributes.get("name", "") for element in _definitions(root, kind))
 
 
@@ -307,7 +307,7 @@ def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameK
     names: dict[tuple[NameKind, str], str] = {}
     for pair in pairs:
         for kind in ROBOT_NAME_KINDS:
-            old_values, new_values = [*_values(pair.before, kind)], [*_values(pair.after, kind)]
+            old_values, new_values = [*_list_names(pair.before, kind)], [*_list_names(pair.after, kind)]
             if len(old_values) != len(new_values):
                 raise UnprovedError(phrase("the number of {kind}s would change", kind=term(kind.value)))
             for old, new in zip(old_values, new_values, strict=True):
@@ -338,7 +338,7 @@ def _names_in(element: Element, *, is_top: bool) -> Iterator[tuple[tuple[NameKin
 
 def _part_names(root: Element) -> set[str]:
     """Return the names of the links and joints of a robot."""
-    return {value for kind in ROBOT_NAME_KINDS[:2] for value in _values(root, kind)}
+    return {value for kind in ROBOT_NAME_KINDS[:2] for value in _list_names(root, kind)}
 
 
 def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> bool:

@@ -83,7 +83,7 @@ def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
         specs = (PropertySpec("Value", own_spec.kind, own_spec.default, own_spec.description, own_spec.options), *specs)
     for spec in specs:
         if spec.name not in present and not spec.read_only:
-            yield _property(spec, cursor.start, has_value=has_value)
+            yield _make_property_completion(spec, cursor.start, has_value=has_value)
     if owner.keys[-1:] in (("Links",), ("Frames",)):
         for name in robot_names(document):
             if name.kind is NameKind.LINK and name.name not in present:
@@ -91,7 +91,7 @@ def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
                 yield Completion(name.name, ItemKind.NAME, cursor.start, name.file.name, "", snippet)
 
 
-def _property(spec: PropertySpec, start: int, *, has_value: bool) -> Completion:
+def _make_property_completion(spec: PropertySpec, start: int, *, has_value: bool) -> Completion:
     default = _default_text(spec)
     detail = f"{spec.kind} = {default}" if default else spec.kind
     value = f": ${{1:{snippet_text(default)}}}" if default else ": $0"
@@ -100,14 +100,14 @@ def _property(spec: PropertySpec, start: int, *, has_value: bool) -> Completion:
     elif spec.children:
         value = f":\n  Value: ${{1:{snippet_text(default)}}}" if default else ":\n  Value: $0"
     snippet = "" if has_value else spec.name + value
-    return Completion(spec.name, ItemKind.ATTRIBUTE, start, detail, _property_description(spec), snippet)
+    return Completion(spec.name, ItemKind.ATTRIBUTE, start, detail, _describe_property(spec), snippet)
 
 
 def _default_text(spec: PropertySpec) -> str:
     return "" if spec.default is None or spec.default == "" else to_text(spec, spec.default)
 
 
-def _property_description(spec: PropertySpec) -> str:
+def _describe_property(spec: PropertySpec) -> str:
     default = _default_text(spec)
     lines = [f"**{spec.name}** `{spec.kind}`" + (f" = `{default}`" if default else "")]
     if spec.description:
@@ -165,8 +165,8 @@ def _default_name(owner: ConfigOwner) -> str:
 def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
     """Yield the classes that a display, tool, view or panel may have, each with its purpose."""
     if owner.role == "Displays":
-        usual = {f"rviz_default_plugins/{name}": number for number, name in enumerate(_COMMON_DISPLAYS)}
-        for name in sorted(extensions(DISPLAYS), key=lambda name: usual.get(name, len(usual))):
+        common_ranks = {f"rviz_default_plugins/{name}": index for index, name in enumerate(_COMMON_DISPLAYS)}
+        for name in sorted(extensions(DISPLAYS), key=lambda name: common_ranks.get(name, len(common_ranks))):
             yield name, _purpose(name)
     elif owner.role == "Tools":
         for name, tool in TOOL_KINDS.items():
@@ -234,7 +234,7 @@ def _explain_property(owner: ConfigOwner, key: str) -> str:
     if key == "Class":
         return _explain_class(owner.class_name)
     spec = owner.spec(key)
-    return "" if spec is None else _property_description(spec)
+    return "" if spec is None else _describe_property(spec)
 
 
 def _explain_class(name: str) -> str:

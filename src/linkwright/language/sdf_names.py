@@ -61,7 +61,7 @@ def sdf_names(text: str, file: Path) -> Iterator[SdfName]:
             for attribute in element.tag.attributes():
                 if attribute.name == "name" and attribute.value and _defines(element):
                     yield SdfName(attribute.value, file, attribute.value_start, element.start)
-        for value, start, scope in _references(element, text):
+        for value, start, scope in _find_references(element, text):
             for part, offset, owner in _referred_elements(scope, value):
                 yield SdfName(part, file, start + offset, owner.start)
 
@@ -95,7 +95,7 @@ def rename_in_sdf(
     if not project.contains(name.file):
         raise UnprovedError(phrase("'{file}' is outside the workspace", file=name.file.name), span)
     definition = innermost_element(source_elements(text), name.definition)
-    scope = None if definition is None else _scope(definition.parent)
+    scope = None if definition is None else _find_scope(definition.parent)
     if definition is None or scope is None:
         raise UnprovedError(phrase("the name is not defined in this file"), span)
     if any(other.value("name") == new for other in _named_children(scope)):
@@ -147,7 +147,7 @@ def _defines(element: SourceElement) -> bool:
     return parent is not None and parent.name in _SCOPES
 
 
-def _scope(element: SourceElement | None) -> SourceElement | None:
+def _find_scope(element: SourceElement | None) -> SourceElement | None:
     """Return the innermost model or world that is or contains an element, or None."""
     while element is not None and element.name not in _SCOPES:
         element = element.parent
@@ -158,32 +158,32 @@ def _named_children(scope: SourceElement) -> Iterator[SourceElement]:
     return (child for child in scope.children if child.name in _DEFINING)
 
 
-def _references(element: SourceElement, text: str) -> Iterator[tuple[str, int, SourceElement]]:
+def _find_references(element: SourceElement, text: str) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the values of an element that may contain names, with offset and scope."""
     for attribute in element.tag.attributes():
         is_reference = attribute.name in _ATTRIBUTES or (element.name, attribute.name) == _MIMIC
         if is_reference and attribute.value:
             own = element if attribute.name in _INNER_REFERENCES and element.name == "model" else None
-            scope = own or _attribute_scope(element)
+            scope = own or _find_attribute_scope(element)
             if scope is not None:
                 yield attribute.value, attribute.value_start, scope
     if element.name in ("model", "link"):
-        yield from _state_reference(element)
+        yield from _find_state_reference(element)
     is_named = element.name in _TEXTS or bool(kinds_of_text(element.name))
     if is_named and not element.children and not _defines(element) and element.end > 0:
         begin = element.tag.end
         written = text[begin : text.find("<", begin)]
         value = written.strip()
-        scope = _scope(element.parent)
+        scope = _find_scope(element.parent)
         if value and scope is not None:
             yield value, begin + written.index(value), scope
 
 
-def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceElement]]:
+def _find_state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the name of a model or link in the state of a world, as a use of that name."""
     lineage = [*element.ancestors_and_self()]
-    state = next((number for number, outer in enumerate(lineage) if outer.name == "state"), None)
-    scope = None if state is None else _scope(lineage[state].parent)
+    state = next((index for index, outer in enumerate(lineage) if outer.name == "state"), None)
+    scope = None if state is None else _find_scope(lineage[state].parent)
     name = next(
         (candidate for candidate in element.tag.attributes() if candidate.name == "name" and candidate.value), None
     )
@@ -199,15 +199,15 @@ def _state_reference(element: SourceElement) -> Iterator[tuple[str, int, SourceE
     yield name.value or "", name.value_start, scope
 
 
-def _attribute_scope(element: SourceElement) -> SourceElement | None:
+def _find_attribute_scope(element: SourceElement) -> SourceElement | None:
     """Return the scope of an element's attributes, or None if there is none.
 
     The scope of a model's pose is outside the model.
     """
     parent = element.parent
     if element.name == "pose" and parent is not None and parent.name == "model":
-        return _scope(parent.parent)
-    return _scope(parent)
+        return _find_scope(parent.parent)
+    return _find_scope(parent)
 
 
 def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, int, SourceElement]]:
@@ -256,12 +256,12 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
         if include.name != "include" or not _includes(include, text, model):
             continue
         include_name = _child_text(include, "name", text)
-        scope = _scope(include.parent)
+        scope = _find_scope(include.parent)
         if include_name and len(path) == 1:  # The include assigns another name to the model.
             continue
         names = [include_name or path[0], *path[1:]]
         for element in elements if scope is not None else ():
-            for value, start, own in _references(element, text):
+            for value, start, own in _find_references(element, text):
                 if own is scope and value.split(_SEPARATOR)[: len(names)] == names:
                     begin = start + sum(len(name) + len(_SEPARATOR) for name in names[:-1])
                     yield Edit(file, begin, begin + len(names[-1]), new)

@@ -21,7 +21,7 @@ _ROS = ElementRule(
     "ros",
     "the node of the plugin",
     children=tuple(
-        ElementRule(tag, meaning, attributes, many=True, text=AttributeRule("text", TEXT, meaning))
+        ElementRule(tag, meaning, attributes, is_repeated=True, text=AttributeRule("text", TEXT, meaning))
         for tag, meaning, attributes in (
             ("namespace", "the namespace of the node", ()),
             ("remapping", "another name for a topic, as in old:=new", ()),
@@ -31,7 +31,7 @@ _ROS = ElementRule(
                 "a parameter of the node",
                 (
                     AttributeRule("name", TEXT, "its name", required=True),
-                    AttributeRule("type", TEXT, "its type: string, int, float or bool", usual=True),
+                    AttributeRule("type", TEXT, "its type: string, int, float or bool", usually_written=True),
                 ),
             ),
         )
@@ -81,7 +81,7 @@ def _plugin(library: str, entry: Mapping[str, object]) -> SimulatorPlugin:
     if not name:
         children = (_ROS, *children)
     return SimulatorPlugin(
-        library, name, purpose, ElementRule("plugin", purpose, PLUGIN.attributes, children, many=True)
+        library, name, purpose, ElementRule("plugin", purpose, PLUGIN.attributes, children, is_repeated=True)
     )
 
 
@@ -95,7 +95,7 @@ def _parameter(entry: Mapping[str, str]) -> ElementRule:
         required=bool(entry.get("required")),
         default=entry.get("default"),
     )
-    return ElementRule(name, meaning, many=is_repeated, text=text, required=text.required)
+    return ElementRule(name, meaning, is_repeated=is_repeated, text=text, required=text.required)
 
 
 def plugin_of(filename: str, name: str = "") -> SimulatorPlugin | None:

@@ -120,7 +120,7 @@ def declared_parameters(document: Document, node: str) -> list[DeclaredParameter
     """
     of_node: list[DeclaredParameter] = []
     others: list[DeclaredParameter] = []
-    for text, parameters, _ in _known_sources(document).values():
+    for text, parameters, _ in _list_known_sources(document).values():
         (of_node if f'"{node}"' in text or f"'{node}'" in text else others).extend(parameters)
     return of_node or others
 
@@ -137,13 +137,13 @@ def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
     """
     return [
         topic
-        for file, source in _known_sources(document).items()
+        for file, source in _list_known_sources(document).items()
         if file.is_relative_to(folder)
         for topic in source.topics
     ]
 
 
-def _known_sources(document: Document) -> dict[Path, _Source]:
+def _list_known_sources(document: Document) -> dict[Path, _Source]:
     """Return the source files that declare parameters or topics, by path."""
     sources = _sources.get(document.project)
     if sources is not None and time.monotonic() - sources.time <= _SECONDS:
@@ -153,7 +153,7 @@ def _known_sources(document: Document) -> dict[Path, _Source]:
     elif sources is None:
         raise NotYetKnownError
     else:
-        document.refreshes.append(partial(_known_sources, replace(document, waits=True)))
+        document.refreshes.append(partial(_list_known_sources, replace(document, waits=True)))
     return sources.sources
 
 
@@ -169,13 +169,13 @@ def _read(project: Workspace, texts: Mapping[Path, str], cached: _Sources | None
             continue
         entry = cache.get(file)
         if entry is None or entry[0] != state:
-            entry = cache[file] = state, _source(project.text(file, texts) or "", file)
+            entry = cache[file] = state, _read_source(project.text(file, texts) or "", file)
         if entry[1].text:
             sources[file] = entry[1]
     return _Sources(sources, time.monotonic(), cache)
 
 
-def _source(text: str, file: Path) -> _Source:
+def _read_source(text: str, file: Path) -> _Source:
     """Return the declarations in a source, or an empty source if there are none."""
     if len(text) > _MAX_TEXT:
         return _Source("", (), ())

@@ -16,9 +16,13 @@ def _required(name: str, kind: ValueType, meaning: str, unit: str = "") -> Attri
 
 
 def _element(
-    tag: str, meaning: str, *attributes: AttributeRule, children: tuple[ElementRule, ...] = (), nests: bool = False
+    tag: str,
+    meaning: str,
+    *attributes: AttributeRule,
+    children: tuple[ElementRule, ...] = (),
+    is_recursive: bool = False,
 ) -> ElementRule:
-    return ElementRule(tag, meaning, attributes, children, many=True, nests=nests)
+    return ElementRule(tag, meaning, attributes, children, is_repeated=True, is_recursive=is_recursive)
 
 
 def _pair_of_links(tag: str, meaning: str) -> ElementRule:
@@ -51,7 +55,7 @@ SRDF = ElementRule(
                     _required("tip_link", LINK, "the last link"),
                 ),
             ),
-            nests=True,
+            is_recursive=True,
         ),
         _element(
             "group_state",

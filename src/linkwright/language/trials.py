@@ -110,7 +110,7 @@ def trials(
     if is_partial and not expansions:
         expansions += _with_gaps(project, texts, entry)
     if is_partial and is_switched and expansions:
-        expansions += _trials_with_other_values(
+        expansions += _generate_trials_with_other_values(
             project, texts, expansions[0], {str(trial.expansion) for trial in expansions}
         )
     return expansions, error
@@ -175,12 +175,12 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
     return None if element_range in gaps.get(file, ()) else (file, element_range)
 
 
-def _trials_with_other_values(
+def _generate_trials_with_other_values(
     project: Workspace, texts: Mapping[Path, str], base: Trial, seen_results: set[str]
 ) -> Iterator[Trial]:
     """Yield the new expansions that result from another value of a single argument."""
     begin = time.monotonic()
-    for name, value in _values(project, texts, base.entry):
+    for name, value in _list_other_values(project, texts, base.entry):
         if base.arguments.get(name) == value:
             continue
         if time.monotonic() - begin > _MAX_SECONDS:
@@ -196,7 +196,7 @@ def _trials_with_other_values(
             yield Trial(base.entry, arguments, expansion, base.gaps, base.reason)
 
 
-def _values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
+def _list_other_values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
     """Return other values of arguments: opposites of defaults, and values in conditions."""
     values: dict[tuple[str, str], None] = {}
     documents = []

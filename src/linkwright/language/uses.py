@@ -56,8 +56,8 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
         packages = (enclosing_package(path.parent) for path in (document.file, file))
         folders = dict.fromkeys(package[1] for package in packages if package is not None)
         others = [real_path(source_of(str(path))) for folder in folders for path in launch_files_below(folder)]
-    for number, path in enumerate(dict.fromkeys((document.file, file, *others))):
-        if number < _MAX_FILES:
+    for index, path in enumerate(dict.fromkeys((document.file, file, *others))):
+        if index < _MAX_FILES:
             text = document.text if path == document.file else document.other(path)
             if path in (document.file, file) or file.name in text:
                 yield Document(document.project, document.texts, path, text)

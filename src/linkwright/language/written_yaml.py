@@ -21,7 +21,7 @@ from linkwright.xmltree.reader import read_bytes
 _LOADED = re.compile(r"""\bload_yaml\(\s*(?:["'](?P<path>[^"']+)["']|(?P<name>\w+))\s*\)(?P<rest>[^{}]*)""")
 _KEY = re.compile(r"""\[\s*["']([^"'\]]*)["']\s*\]""")
 _PART = re.compile(r"\$\((find|arg|dirname)\s*([\w.-]*)\)|\$\{(\w+)\}")
-_DEEPEST = 8
+_MAX_PASSES = 8
 
 
 def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -> Any:
@@ -69,7 +69,7 @@ def _replace_known(text: str, file: Path, document: Document, names: Sequence[Na
         value_text, _ = _definition_of(part[2] or part[3], kind, names)
         return value_text or part[0]
 
-    for _ in range(_DEEPEST):
+    for _ in range(_MAX_PASSES):
         replaced = _PART.sub(value, text)
         if replaced == text or len(replaced) > len(text) + 10_000:
             break

@@ -43,11 +43,11 @@ def _complete(document: Document, offset: int, names: Sequence[NameDefinition]) 
         if cursor.typed.strip() or (rule is not None and rule.text is not None and not rule.child_rules):
             return
     if cursor.syntax is CursorSyntax.TAG or (cursor.syntax is CursorSyntax.TEXT and not cursor.typed.strip()):
-        yield from _elements(document, cursor, root, names)
+        yield from _offer_elements(document, cursor, root, names)
     elif cursor.syntax is CursorSyntax.CLOSING_TAG and cursor.tags:
         yield Completion(cursor.tags[-1], ItemKind.ELEMENT, offset - len(cursor.typed))
     elif cursor.syntax is CursorSyntax.ATTRIBUTE:
-        yield from _attributes(cursor, root, names)
+        yield from _offer_attributes(cursor, root, names)
     elif cursor.syntax is CursorSyntax.VALUE:
         rule = None if cursor.tags[-1].startswith(PREFIX) else rule_at(root, cursor.tags, cursor.elements)
         yield from complete_value(document, cursor, rule, names)
@@ -56,7 +56,7 @@ def _complete(document: Document, offset: int, names: Sequence[NameDefinition]) 
 # --- elements ---------------------------------------------------------------------------------------------------------
 
 
-def _elements(
+def _offer_elements(
     document: Document, cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]
 ) -> Iterator[Completion]:
     opens_tag = cursor.syntax is CursorSyntax.TEXT
@@ -68,10 +68,10 @@ def _elements(
         offered: Iterable[ElementRule] = [root]
     else:
         offered = (rule or (root if in_macro_alone else None) or ElementRule("", "")).child_rules.values()
-    present = _present_elements(document.text, cursor) if cursor.tags else frozenset()
-    free = [child for child in offered if child.many or child.tag not in present]
+    present = _list_present_elements(document.text, cursor) if cursor.tags else frozenset()
+    free = [child for child in offered if child.is_repeated or child.tag not in present]
     for child in sorted(free, key=lambda child: not child.required):
-        snippet = mark + _element_snippet(child)
+        snippet = mark + _make_element_snippet(child)
         yield Completion(child.tag, ItemKind.ELEMENT, start, _unit_of(child), describe_element(child), snippet)
     if not cursor.tags or not has_xacro(root):
         return
@@ -80,10 +80,12 @@ def _elements(
         described = f"`{macro.detail}`\n\n{macro.file.name}" if macro.detail else macro.file.name
         yield Completion(label, ItemKind.MACRO, start, _one_line(macro.detail), described, mark + _call_snippet(macro))
     for tag in XACRO.values():
-        yield Completion(tag.tag, ItemKind.ELEMENT, start, "xacro", describe_element(tag), mark + _element_snippet(tag))
+        yield Completion(
+            tag.tag, ItemKind.ELEMENT, start, "xacro", describe_element(tag), mark + _make_element_snippet(tag)
+        )
 
 
-def _present_elements(text: str, cursor: Cursor) -> frozenset[str]:
+def _list_present_elements(text: str, cursor: Cursor) -> frozenset[str]:
     """Return the existing child elements around a cursor, without the one being typed."""
     children = Outline.of(text).elements
     parent: OutlineElement | None = None
@@ -108,8 +110,8 @@ def _escape(text: str) -> str:
     return text.replace("\\", "\\\\").replace("$", "\\$").replace("}", "\\}")
 
 
-def _element_snippet(rule: ElementRule) -> str:
-    snippet_attributes = [attribute for attribute in rule.attributes if attribute.required or attribute.usual]
+def _make_element_snippet(rule: ElementRule) -> str:
+    snippet_attributes = [attribute for attribute in rule.attributes if attribute.required or attribute.usually_written]
     attributes_text = "".join(
         f' {attribute.name}="${{{number}}}"' for number, attribute in enumerate(snippet_attributes, 1)
     )
@@ -141,7 +143,7 @@ def _is_required(parameter: Parameter) -> bool:
 # --- attributes -------------------------------------------------------------------------------------------------------
 
 
-def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]) -> Iterator[Completion]:
+def _offer_attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinition]) -> Iterator[Completion]:
     tag = cursor.tags[-1]
     start = cursor.offset - len(cursor.typed)
     present = {attribute.name for attribute in cursor.token.attributes()} if cursor.token else set()
@@ -163,8 +165,8 @@ def _attributes(cursor: Cursor, root: ElementRule, names: Sequence[NameDefinitio
         return
     rule = XACRO.get(tag) or rule_at(root, cursor.tags, cursor.elements)
     free = [] if rule is None else [attribute for attribute in rule.attributes if attribute.name not in present]
-    for attribute in sorted(free, key=lambda attribute: (not attribute.required, not attribute.usual)):
-        yield _attribute(attribute, start, suffix)
+    for attribute in sorted(free, key=lambda attribute: (not attribute.required, not attribute.usually_written)):
+        yield _make_attribute_completion(attribute, start, suffix)
 
 
 def describe_parameter(parameter: Parameter, macro: NameDefinition) -> str:
@@ -173,7 +175,7 @@ def describe_parameter(parameter: Parameter, macro: NameDefinition) -> str:
     return f"**{parameter.name}**{default}, {PREFIX}{macro.name}, {macro.file.name}"
 
 
-def _attribute(attribute: AttributeRule, start: int, suffix: str) -> Completion:
+def _make_attribute_completion(attribute: AttributeRule, start: int, suffix: str) -> Completion:
     detail = f"{attribute.type.name}, {attribute.unit}" if attribute.unit else attribute.type.name
     description = describe_attribute(attribute)
     return Completion(attribute.name, ItemKind.ATTRIBUTE, start, detail, description, attribute.name + suffix)

@@ -206,18 +206,18 @@ class YamlOutline:
     def _read(self) -> None:
         stack = [self.root]
         offset, skip_column, flow_until = 0, None, -1
-        for number, line in enumerate(self.text.split("\n")):
+        for index, line in enumerate(self.text.split("\n")):
             content = line.lstrip(" \t")
             column = len(line) - len(content)
             if skip_column is not None and content.strip() and column <= skip_column:
                 skip_column = None
             if offset >= flow_until and skip_column is None and content.strip():
                 if content.startswith("#"):
-                    self._comments[number] = offset + column
+                    self._comments[index] = offset + column
                 elif content.startswith("---"):
                     stack = [self.root]
                 else:
-                    entry = self._read_line(line, column, offset, number, stack)
+                    entry = self._read_line(line, column, offset, index, stack)
                     if entry is not None and _BLOCK_TEXT.match(entry.value):
                         skip_column = entry.column
                     elif entry is not None and entry.value.startswith(("[", "{")):
@@ -225,19 +225,21 @@ class YamlOutline:
             self._last.append(stack[-1])
             offset += len(line) + 1
 
-    def _read_line(self, line: str, column: int, offset: int, number: int, stack: list[YamlEntry]) -> YamlEntry | None:
+    def _read_line(
+        self, line: str, column: int, offset: int, line_index: int, stack: list[YamlEntry]
+    ) -> YamlEntry | None:
         """Add the entries of a line, and return the last one, or None."""
         added: YamlEntry | None = None
         end = _comment_start(line, column)
         if end < len(line):
-            self._comments[number] = offset + end
+            self._comments[line_index] = offset + end
         for _ in range(_MAX_DASHES):
             item_text = line[column:end]
             if item_text.startswith("-") and item_text[1:2] in ("", " ", "\t", "\r"):
                 _pop_to_column(stack, column, is_item=True)
                 width = len(item_text) - len(item_text[1:].lstrip(" \t"))
                 value = item_text[width:].rstrip()
-                added = YamlEntry("", column, offset + column, value, offset + column + width, number, stack[-1])
+                added = YamlEntry("", column, offset + column, value, offset + column + width, line_index, stack[-1])
                 stack[-1].children.append(added)
                 stack.append(added)
                 column += width
@@ -251,7 +253,7 @@ class YamlOutline:
             value = item_text[match.end() :]
             space = len(value) - len(value.lstrip(" \t"))
             begin = offset + column + match.end() + space
-            added = YamlEntry(unquoted(match[1]), column, offset + column, value.strip(), begin, number, stack[-1])
+            added = YamlEntry(unquoted(match[1]), column, offset + column, value.strip(), begin, line_index, stack[-1])
             stack[-1].children.append(added)
             stack.append(added)
             break

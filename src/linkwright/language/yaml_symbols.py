@@ -25,12 +25,12 @@ def yaml_symbols(document: Document) -> list[Symbol]:
 def _symbols(entries: Iterable[YamlEntry], depth: int) -> Iterator[Symbol]:
     if depth == 0:
         return
-    for number, entry in enumerate(entries):
+    for index, entry in enumerate(entries):
         children = tuple(_symbols(entry.children, depth - 1))
         if entry.is_item:
             if not children:
                 continue
-            name = next((child.scalar for key in _NAMING if (child := entry.child(key)) and child.scalar), str(number))
+            name = next((child.scalar for key in _NAMING if (child := entry.child(key)) and child.scalar), str(index))
             yield Symbol(name, SymbolKind.OBJECT, entry.start, entry.end, children)
             continue
         kind = SymbolKind.GROUP if children else SymbolKind.KEY

@@ -101,9 +101,9 @@ class TextFiles:
         """The names and patterns of names in each file, by path."""
         known = {} if self._other is None else self._other._names_by_file
         names: dict[str, frozenset[str]] = {}
-        for path, file in self._files():
+        for path, file in self._walk_files():
             is_known = path in known and path not in self._changed
-            names[path] = known[path] if is_known else frozenset(_file_names(_text(file)))
+            names[path] = known[path] if is_known else frozenset(_find_file_names(_text(file)))
         return names
 
     @property
@@ -117,7 +117,7 @@ class TextFiles:
             for pattern, files in self._names[1].items()
         ]
 
-    def _files(self) -> Iterator[tuple[str, Path]]:
+    def _walk_files(self) -> Iterator[tuple[str, Path]]:
         """Yield the relative and the absolute path of each file."""
         for folder, folders, names in os.walk(self._root):
             folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
@@ -134,7 +134,7 @@ def _text(file: Path) -> str:
         return stream.read(size).decode("utf-8", errors="replace")
 
 
-def _file_names(text: str) -> Iterator[str]:
+def _find_file_names(text: str) -> Iterator[str]:
     """Yield the file names in a text, with ``*`` for each computed part, and the names of SDF models."""
     for word in set(_WORD.findall(_EXPRESSION.sub("*", text))):
         if word.startswith(_MODEL):

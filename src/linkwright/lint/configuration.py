@@ -146,12 +146,12 @@ class _Reader:
                 self._add("LINT102", phrase("there is no setting '{key}'", key=key), (key,), hint)
         select = table.get("select")
         return Settings(
-            None if select is None else self._selectors(("select",), select),
-            self._selectors(("extend-select",), table.get("extend-select", [])),
-            self._selectors(("ignore",), table.get("ignore", [])),
+            None if select is None else self._read_selectors(("select",), select),
+            self._read_selectors(("extend-select",), table.get("extend-select", [])),
+            self._read_selectors(("ignore",), table.get("ignore", [])),
             dict(self._severities(self._table("severity", table))),
             tuple(self._per_file_ignores(self._table("per-file-ignores", table))),
-            dict(self._options(self._table("options", table))),
+            dict(self._read_options(self._table("options", table))),
             folder,
             tuple(self._arguments(self._table("arguments", table))),
             Style(**dict(self._style_settings(self._table("format", table)))),
@@ -166,7 +166,7 @@ class _Reader:
         )
         return {}
 
-    def _selectors(self, path: tuple[str, ...], value: Any) -> tuple[str, ...]:
+    def _read_selectors(self, path: tuple[str, ...], value: Any) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             self._report_invalid(
                 path,
@@ -174,9 +174,9 @@ class _Reader:
                 phrase('write {key} = ["LW204", "limit-inverted"]', key=_toml_key(path[-1])),
             )
             return ()
-        return tuple(selector for item in value if (selector := self._selector(path, item, item)))
+        return tuple(selector for item in value if (selector := self._read_selector(path, item, item)))
 
-    def _selector(self, path: tuple[str, ...], selector: str, value_text: str) -> str | None:
+    def _read_selector(self, path: tuple[str, ...], selector: str, value_text: str) -> str | None:
         if is_selector(selector):
             return canonical(selector)
         self._add(
@@ -192,7 +192,7 @@ class _Reader:
         severity_names = [severity.value for severity in Severity]
         for key, value in table.items():
             path = ("severity", key)
-            selector = self._selector(path, key, key)
+            selector = self._read_selector(path, key, key)
             if value not in severity_names:
                 hint = did_you_mean(str(value), severity_names) or phrase(
                     "use one of {values}; to silence a rule, use ignore", values=joined(severity_names)
@@ -203,7 +203,7 @@ class _Reader:
 
     def _per_file_ignores(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
         for pattern, value in table.items():
-            yield pattern, self._selectors(("per-file-ignores", pattern), value)
+            yield pattern, self._read_selectors(("per-file-ignores", pattern), value)
 
     def _arguments(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Mapping[str, str], ...]]]:
         for pattern, value in table.items():
@@ -230,7 +230,7 @@ class _Reader:
             else:
                 yield key, value
 
-    def _options(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, OptionValue]]]:
+    def _read_options(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, OptionValue]]]:
         for key, value in table.items():
             rule = find_rule(key)
             if rule is None:
@@ -242,9 +242,9 @@ class _Reader:
                     ("options", key), phrase("is not a table"), phrase("write [options.{key}]", key=key)
                 )
             else:
-                yield rule.name, dict(self._rule_options(rule, key, value))
+                yield rule.name, dict(self._read_rule_options(rule, key, value))
 
-    def _rule_options(self, rule: Rule, key: str, table: Mapping[str, Any]) -> Iterator[tuple[str, OptionValue]]:
+    def _read_rule_options(self, rule: Rule, key: str, table: Mapping[str, Any]) -> Iterator[tuple[str, OptionValue]]:
         options = {option.name: option for option in rule.options}
         for name, value in table.items():
             path = ("options", key, name)

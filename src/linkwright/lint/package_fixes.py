@@ -181,15 +181,15 @@ def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | No
     from linkwright.packages.readers.python_values import PythonFile, argument_of
 
     try:
-        python = PythonFile(setup.source)
+        python_file = PythonFile(setup.source)
     except (SyntaxError, ValueError):
         return None
-    call = next(python.calls("setup"), None)
+    call = next(python_file.calls("setup"), None)
     node = None if call is None else argument_of(call, "data_files")
-    node = None if node is None else python.resolved(node)
+    node = None if node is None else python_file.resolved(node)
     if not isinstance(node, ast.List):
         return None
-    spans = [python.span(element) for element in (node, *node.elts)]
+    spans = [python_file.span(element) for element in (node, *node.elts)]
     offset = setup.source.offset
     ranges = [(offset(span.line, span.column), offset(span.end_line, span.end_column)) for span in spans]
     return ranges[0][0], ranges[1:]

@@ -74,7 +74,7 @@ class _Setter:
                 phrase(
                     "{subject} must be a mapping of fields to values, not {actual}",
                     subject=subject,
-                    actual=_value_text(values),
+                    actual=_describe_value(values),
                 ),
                 phrase("its fields: {names}", names=names or phrase("none")),
             )
@@ -85,22 +85,22 @@ class _Setter:
             if kind is None:
                 self._report_unknown_field(message, str(name), path)
             else:
-                self._field(message, name, kind, value, f"{path}.{name}" if path else name)
+                self._set_field(message, name, kind, value, f"{path}.{name}" if path else name)
 
-    def _field(self, message: Message, name: str, kind: FieldType, value: Any, path: str) -> None:
+    def _set_field(self, message: Message, name: str, kind: FieldType, value: Any, path: str) -> None:
         if self._is_stamp(message, name, kind, value):
             return
         try:
-            setattr(message, name, self._value(kind, value, path))
+            setattr(message, name, self._convert_value(kind, value, path))
         except _InvalidValueError as unfit:
             self._report_invalid_value(
-                phrase("'{path}' cannot be {value}", path=path, value=_value_text(value)),
+                phrase("'{path}' cannot be {value}", path=path, value=_describe_value(value)),
                 phrase("it must be {expected}", expected=unfit),
             )
         except AssertionError as error:
             reason = str(error).partition(" must ")[2]
             self._report_invalid_value(
-                phrase("'{path}' cannot be {value}", path=path, value=_value_text(value)),
+                phrase("'{path}' cannot be {value}", path=path, value=_describe_value(value)),
                 phrase("it must {reason}", reason=foreign(reason)),
             )
 
@@ -117,24 +117,28 @@ class _Setter:
 
     # --- values ---------------------------------------------------------------------------------------------
 
-    def _value(self, kind: FieldType, value: Any, path: str) -> Any:
+    def _convert_value(self, kind: FieldType, value: Any, path: str) -> Any:
         primitive = kind.primitive
         if kind.container is Container.ONE:
-            return self._message(kind, value, path) if primitive is None else _converted_value(primitive, kind, value)
+            return (
+                self._convert_message(kind, value, path)
+                if primitive is None
+                else _convert_primitive(primitive, kind, value)
+            )
         if kind.base in {"uint8", "char"} and isinstance(value, (bytes, bytearray)):
             value = list(value)
         if not (isinstance(value, (Sequence, array)) or is_array(value)) or isinstance(value, (str, bytes)):
-            raise _InvalidValueError(_type_description(kind))
+            raise _InvalidValueError(_describe_type(kind))
         item_type = FieldType(kind.base, kind.string_bound)
-        values = [self._value(item_type, item, f"{path}[{index}]") for index, item in enumerate(value)]
+        values = [self._convert_value(item_type, item, f"{path}[{index}]") for index, item in enumerate(value)]
         has_fixed_length = kind.container is Container.ARRAY
         if kind.size is not None and (len(values) > kind.size or (has_fixed_length and len(values) < kind.size)):
             raise _InvalidValueError(
-                phrase("{list}, not of {count} values", list=_type_description(kind), count=len(values))
+                phrase("{list}, not of {count} values", list=_describe_type(kind), count=len(values))
             )
         return values
 
-    def _message(self, kind: FieldType, value: Any, path: str) -> Any:
+    def _convert_message(self, kind: FieldType, value: Any, path: str) -> Any:
         cls = get_message(kind.base)
         if isinstance(value, cls):
             return value
@@ -160,7 +164,7 @@ class _Setter:
         self.diagnostics.append(Diagnostic("MSG302", message, hint=hint))
 
 
-def _converted_value(primitive: Primitive, kind: FieldType, value: Any) -> Any:
+def _convert_primitive(primitive: Primitive, kind: FieldType, value: Any) -> Any:
     """Return a value converted to the Python type of its field.
 
     The setter checks ranges and lengths.
@@ -170,30 +174,30 @@ def _converted_value(primitive: Primitive, kind: FieldType, value: Any) -> Any:
     python = primitive.python
     if python is str:
         if isinstance(value, (str, int, float)):
-            return _as_text(value)
+            return _convert_to_text(value)
     elif python is bool:
         if isinstance(value, bool) or value in (0, 1):
             return bool(value)
     elif python is bytes:
-        return _as_byte(value)
+        return _convert_to_byte(value)
     elif isinstance(value, (bool, int, float, str)):
         try:
             number = python(value)
         except (ValueError, OverflowError):
-            raise _InvalidValueError(_type_description(kind)) from None
+            raise _InvalidValueError(_describe_type(kind)) from None
         if python is int and isinstance(value, float) and number != value:
-            raise _InvalidValueError(_type_description(kind))
+            raise _InvalidValueError(_describe_type(kind))
         return number
-    raise _InvalidValueError(_type_description(kind))
+    raise _InvalidValueError(_describe_type(kind))
 
 
-def _as_text(value: str | float) -> str:
+def _convert_to_text(value: str | float) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     return str(value)
 
 
-def _as_byte(value: Any) -> bytes:
+def _convert_to_byte(value: Any) -> bytes:
     if isinstance(value, (bytes, bytearray)) and len(value) == 1:
         return bytes(value)
     if isinstance(value, int) and 0 <= value <= 255:
@@ -203,7 +207,7 @@ def _as_byte(value: Any) -> bytes:
     raise _InvalidValueError(phrase("a byte, 0 to 255"))
 
 
-def _type_description(kind: FieldType) -> Phrase:
+def _describe_type(kind: FieldType) -> Phrase:
     descriptions = {
         int: phrase("an integer"),
         float: phrase("a number"),
@@ -227,6 +231,6 @@ def _type_description(kind: FieldType) -> Phrase:
     return value_description
 
 
-def _value_text(value: Any) -> str:
+def _describe_value(value: Any) -> str:
     text = repr(value) if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

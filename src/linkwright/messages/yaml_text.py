@@ -67,13 +67,13 @@ class _Writer:
         """
         path = (*path, "m")
         lines, append = self._lines, self._lines.append
-        for key, slot, kind, format_number in _plan(type(message)):
+        for key, slot, kind, format_number in _make_plan(type(message)):
             value = getattr(message, slot)
             if format_number is not None:
                 append(f"{indent}{key}: {format_number(value)}\n")
             elif kind.container is not Container.ONE:
                 append(f"{indent}{key}:")
-                self._list(kind, value, indent, path)
+                self._write_list(kind, value, indent, path)
             elif isinstance(value, Message):
                 append(f"{indent}{key}:\n")
                 line_count = len(lines)
@@ -81,12 +81,12 @@ class _Writer:
                 if len(lines) == line_count:
                     lines[-1] = f"{indent}{key}: {{}}\n"
             else:
-                append(f"{indent}{key}: {self._text(value, path)}\n")
+                append(f"{indent}{key}: {self._format_value(value, path)}\n")
 
-    def _list(self, kind: FieldType, values: Any, indent: str, path: tuple[str, ...]) -> None:
+    def _write_list(self, kind: FieldType, values: Any, indent: str, path: tuple[str, ...]) -> None:
         lines = self._lines
         if self._abridgement.no_arr:
-            lines.append(f" {_scalar(abbreviated(kind, values))}\n")
+            lines.append(f" {_format_scalar(abbreviated(kind, values))}\n")
             return
         if not len(values):
             lines.append(" []\n")
@@ -95,7 +95,7 @@ class _Writer:
         length = self._abridgement.truncate_length
         shown_values = values if length is None else list(values)[:length]
         bullet = indent + "- "
-        format_number = _number_text(kind)
+        format_number = _choose_number_format(kind)
         if format_number is not None:
             numbers = (
                 shown_values.tolist() if isinstance(shown_values, array) or is_array(shown_values) else shown_values
@@ -104,14 +104,14 @@ class _Writer:
         else:
             path = (*path, "s")
             for item in shown_values:
-                self._item(item, indent, bullet, path)
+                self._write_item(item, indent, bullet, path)
         if len(shown_values) < len(values):
             lines.append(f"{bullet}'{ELLIPSIS}'\n")
 
-    def _item(self, value: Any, indent: str, bullet: str, path: tuple[str, ...]) -> None:
+    def _write_item(self, value: Any, indent: str, bullet: str, path: tuple[str, ...]) -> None:
         lines = self._lines
         if not isinstance(value, Message):
-            lines.append(f"{bullet}{self._text(value, path)}\n")
+            lines.append(f"{bullet}{self._format_value(value, path)}\n")
             return
         first_line = len(lines)
         self.message(value, indent + "  ", path)
@@ -120,15 +120,15 @@ class _Writer:
         else:
             lines.append(f"{bullet}{{}}\n")
 
-    def _text(self, value: Any, path: tuple[str, ...]) -> str:
+    def _format_value(self, value: Any, path: tuple[str, ...]) -> str:
         text = (
             self._abridgement.cut(value.decode("latin-1"))
             if isinstance(value, bytes)
             else self._abridgement.text(value)
         )
         if len(text) <= _MAX_CACHED_LENGTH and text.isprintable():
-            return _scalar(text)
-        return _block_scalar(text, path)
+            return _format_scalar(text)
+        return _format_block_scalar(text, path)
 
 
 _Step = tuple[str, str, FieldType, Callable[[Any], str] | None]
@@ -137,31 +137,31 @@ _Step = tuple[str, str, FieldType, Callable[[Any], str] | None]
 _plans: dict[str, list[_Step]] = {}
 
 
-def _plan(cls: type[Message]) -> list[_Step]:
+def _make_plan(cls: type[Message]) -> list[_Step]:
     """Return the cached steps that write the fields of a message class."""
     plan = _plans.get(cls.TYPE_NAME)
     if plan is None:
-        plan = _plans[cls.TYPE_NAME] = [_step(field) for field in definition_of(cls).fields]
+        plan = _plans[cls.TYPE_NAME] = [_make_step(field) for field in definition_of(cls).fields]
     return plan
 
 
-def _step(field: Field) -> _Step:
-    format_number = _number_text(field.type) if field.type.container is Container.ONE else None
-    return _scalar(field.name), "_" + field.name, field.type, format_number
+def _make_step(field: Field) -> _Step:
+    format_number = _choose_number_format(field.type) if field.type.container is Container.ONE else None
+    return _format_scalar(field.name), "_" + field.name, field.type, format_number
 
 
-def _number_text(kind: FieldType) -> Callable[[Any], str] | None:
+def _choose_number_format(kind: FieldType) -> Callable[[Any], str] | None:
     """Return the function that formats numbers or bools of a type, or None for other types."""
     primitive = kind.primitive
-    formatters: dict[type, Callable[[Any], str]] = {int: str, float: _float_text, bool: _bool_text}
+    formatters: dict[type, Callable[[Any], str]] = {int: str, float: _format_float, bool: _format_bool}
     return None if primitive is None else formatters.get(primitive.python)
 
 
-def _bool_text(value: object) -> str:
+def _format_bool(value: object) -> str:
     return "true" if value else "false"
 
 
-def _float_text(value: float) -> str:
+def _format_float(value: float) -> str:
     if not isfinite(value):
         return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
     text = repr(float(value))
@@ -170,12 +170,12 @@ def _float_text(value: float) -> str:
 
 
 @lru_cache(maxsize=8192)
-def _scalar(text: str) -> str:
+def _format_scalar(text: str) -> str:
     """Format a single-line string as a value or a key."""
     return _dump({"k": text}, flow_style=False)[len("k: ") : -1]
 
 
-def _block_scalar(text: str, path: tuple[str, ...]) -> str:
+def _format_block_scalar(text: str, path: tuple[str, ...]) -> str:
     """Format a multi-line string with the indentation for its path.
 
     To get this indentation, PyYAML formats the string inside containers of the same kinds.

@@ -11,7 +11,8 @@ from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile, ReliabilityP
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
-_BAND_HEIGHT = 1 / 3
+_BAND_HEIGHT_FRACTION = 1 / 3
+"""The height of the band with a gradient, as a fraction of the image's height."""
 
 
 class DemoCamera(SingleNode):
@@ -81,7 +82,7 @@ def _stripes(width: int, height: int) -> NDArray[np.uint8]:
     bars = 7 - columns * 8 // width
     image = np.empty((height, width, 3), dtype=np.uint8)
     image[:] = np.stack([bars & 1, bars >> 2 & 1, bars >> 1 & 1], axis=-1) * 255
-    image[round(height * (1 - _BAND_HEIGHT)) :] = (columns * 255 // max(1, width - 1))[:, np.newaxis]
+    image[round(height * (1 - _BAND_HEIGHT_FRACTION)) :] = (columns * 255 // max(1, width - 1))[:, np.newaxis]
     return image
 
 

@@ -247,7 +247,7 @@ def make_layout(robot: Robot, settings: JointSettings) -> JointLayout:
     for joint in robot.joints.values():
         if joint.type not in MOVING_TYPES:
             continue
-        limits = _limits(joint, settings, problems)
+        limits = _read_limits(joint, settings, problems)
         if limits is None:
             continue
         zero = settings.zeros.get(joint.name, _default_zero(*limits))
@@ -294,11 +294,11 @@ def _default_zero(lower: float, upper: float) -> float:
     return (lower + upper) / 2.0 if lower > 0.0 or upper < 0.0 else 0.0
 
 
-def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple[float, float] | None:
+def _read_limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple[float, float] | None:
     if joint.type == "continuous":
         lower, upper = -pi, pi
     else:
-        missing_limit = _missing_limit(joint)
+        missing_limit = _find_missing_limit(joint)
         if missing_limit is not None or joint.limit is None:
             problems.append(
                 f'Limits must be specified for joint "{joint.name}" of type "{joint.type}"'
@@ -312,10 +312,10 @@ def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple
             lower = max(lower, joint.safety.soft_lower_limit)
         if _is_set(joint, "safety_controller", "soft_upper_limit"):
             upper = min(upper, joint.safety.soft_upper_limit)
-    return _finite_limits(min(lower, upper), max(lower, upper), _UNLIMITED_RANGE[joint.type])
+    return _make_limits_finite(min(lower, upper), max(lower, upper), _UNLIMITED_RANGE[joint.type])
 
 
-def _missing_limit(joint: Joint) -> str | None:
+def _find_missing_limit(joint: Joint) -> str | None:
     """Return the name of the first missing limit attribute, or None.
 
     urdfdom reads a missing limit as 0, and joint_state_publisher rejects it.
@@ -339,7 +339,7 @@ def _is_set(joint: Joint, tag: str, attribute: str) -> bool:
     return element is not None and attribute in element.attributes
 
 
-def _finite_limits(lower: float, upper: float, default_range: float) -> tuple[float, float]:
+def _make_limits_finite(lower: float, upper: float, default_range: float) -> tuple[float, float]:
     if isfinite(lower) and isfinite(upper):
         return lower, upper
     if isfinite(lower):

@@ -173,19 +173,19 @@ class _Declaration:
     properties: _Properties
 
 
-def declare_table(node: Node, table: type[P], prefix: str = "", usual: P | None = None) -> P:
+def declare_table(node: Node, table: type[P], prefix: str = "", defaults: P | None = None) -> P:
     """Declare the parameters of a table that are not yet declared, and return their values.
 
     Args:
         node: the node.
         table: the dataclass.
         prefix: the prefix of the names, such as the name of a plugin for ``PLUGIN.parameter``.
-        usual: the defaults to use instead of the defaults of the table.
+        defaults: the defaults to use instead of the defaults of the table.
 
     Raises:
         LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
     """
-    values: P = _Reader(node).read(table, f"{prefix}." if prefix else "", usual)
+    values: P = _Reader(node).read(table, f"{prefix}." if prefix else "", defaults)
     return values
 
 
@@ -250,7 +250,7 @@ class _Reader:
         self._node = node
         self.declared: dict[str, _Declaration] = {}
 
-    def read(self, table: Any, prefix: str = "", usual: Any = None) -> Any:
+    def read(self, table: Any, prefix: str = "", defaults: Any = None) -> Any:
         kinds = _kinds(table)
         values: dict[str, Any] = {}
         for entry in fields(table):
@@ -265,8 +265,8 @@ class _Reader:
             else:
                 default = entry.default if entry.default is not MISSING else None
                 properties = entry.metadata.get(_PROPERTIES, _Properties())
-                if usual is not None:
-                    default = getattr(usual, entry.name)
+                if defaults is not None:
+                    default = getattr(defaults, entry.name)
                 elif properties.later is not _UNCHANGED and not is_before_iron():
                     default = properties.later
                 values[entry.name] = self._declare_and_get(_Declaration(name, _TYPES[kind], default, properties))

@@ -19,6 +19,7 @@ _MAX_DELAYS = 1000
 _UPDATE_PERIOD_SECONDS = 0.5
 _UPDATES_PER_REPORT = 21
 _FILTER_WEIGHT = 0.01
+"""The weight of a new delay in the average."""
 _LATEST = Time()
 _MIN_SPAN_S = 1e-8
 

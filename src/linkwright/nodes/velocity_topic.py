@@ -80,10 +80,10 @@ class VelocityTopic:
             self.close()
             return 0
         subscriber_types = [other.type_name for other in other_endpoints if other.kind is EndpointKind.SUBSCRIPTION]
-        kind = self._choose_type(subscriber_types)
-        if self._publisher is None or (may_change and self._publisher.type_name != kind):
+        message_type = self._choose_type(subscriber_types)
+        if self._publisher is None or (may_change and self._publisher.type_name != message_type):
             self.close()
-            self._publisher = self._node.create_publisher(kind, self._topic, _DEPTH)
+            self._publisher = self._node.create_publisher(message_type, self._topic, _DEPTH)
         return subscriber_types.count(self._publisher.type_name)
 
     def publish(self, linear: Sequence[float], angular: Sequence[float]) -> None:

@@ -32,18 +32,18 @@ class ZenohRouter(SingleNode):
             )
         from linkwright.wire.zenoh.opening import ObstacleReporter
         from linkwright.wire.zenoh.reaching import configured_addresses
-        from linkwright.wire.zenoh.session import close_session, configuration, listening_at, open_with
+        from linkwright.wire.zenoh.session import build_config, close_session, listen_endpoints, open_session
         from linkwright.wire.zenoh.settings import read_router_settings
 
-        config = configuration(read_router_settings())
-        self._session = open_with(config)
+        config = build_config(read_router_settings())
+        self._session = open_session(config)
         try:
             self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         except LinkwrightError:
             close_session(self._session)
             raise
         logger = self._node.get_logger()
-        logger.info(f"Zenoh router at {', '.join(listening_at(config))}")
+        logger.info(f"Zenoh router at {', '.join(listen_endpoints(config))}")
         self._reporter = ObstacleReporter(config, self._warn, lambda: bool(self._session.info.routers_zid()))
         if configured_addresses(config):
             self._reporter.start()

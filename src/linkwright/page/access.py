@@ -250,7 +250,7 @@ def security_headers(host: str, *, frames: str = "'none'", frame_ancestors: str 
 MAX_CONNECTIONS = 256
 """The largest number of open connections. A browser opens about six for a page."""
 
-PATIENCE = 10.0
+FIRST_REQUEST_TIMEOUT_S = 10.0
 """Seconds within which a new connection must send a request."""
 
 
@@ -350,7 +350,7 @@ class LimitedConnection(asyncio.Protocol):
         self._is_counted = self._admission.try_open(self)
         self.served.connection_made(transport)
         if self._is_counted:
-            self._deadline = asyncio.get_running_loop().call_later(PATIENCE, self.end)
+            self._deadline = asyncio.get_running_loop().call_later(FIRST_REQUEST_TIMEOUT_S, self.end)
         else:
             self.end()
 

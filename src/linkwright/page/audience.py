@@ -413,7 +413,7 @@ class Audience(PageGroup):
             log_failure(self._logger, f"'{type(message).__name__}' of a page", error)
 
 
-_MAX_RATE = 1000.0
+_MAX_RATE_HZ = 1000.0
 _MAX_BURST = 4000.0
 """The number of messages that a page may send at once, such as the reports of all meshes of a large robot."""
 
@@ -433,6 +433,8 @@ class RateLimit:
     def next_delay(self) -> float:
         """Return the time in seconds by which the next message must be delayed."""
         now = self._clock()
-        self._remaining_messages = min(_MAX_BURST, self._remaining_messages + (now - self._last_time) * _MAX_RATE) - 1.0
+        self._remaining_messages = (
+            min(_MAX_BURST, self._remaining_messages + (now - self._last_time) * _MAX_RATE_HZ) - 1.0
+        )
         self._last_time = now
-        return max(0.0, -self._remaining_messages / _MAX_RATE)
+        return max(0.0, -self._remaining_messages / _MAX_RATE_HZ)

@@ -40,7 +40,7 @@ MAX_MESSAGE_SIZE = 1024 * 1024
 """The maximum size in bytes of a message from a page. A longer message closes the page's socket (1009)."""
 
 _OWN_CONFIGURATION_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
-_HEARTBEAT = 15.0
+_HEARTBEAT_PERIOD_S = 15.0
 _IDLE_TIMEOUT = 30.0
 """Seconds for which a connection may stay open without a request."""
 
@@ -391,7 +391,7 @@ class WebServer:
         if audience.is_full:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
-            heartbeat=_HEARTBEAT,
+            heartbeat=_HEARTBEAT_PERIOD_S,
             timeout=_CLOSE_TIMEOUT,
             compress=False,
             max_msg_size=MAX_MESSAGE_SIZE,

@@ -27,7 +27,7 @@ from linkwright.page.http_server import web
 if TYPE_CHECKING:
     from linkwright.page.audience import Audience
 
-PATIENCE = 60.0
+IDLE_TIMEOUT_S = 60.0
 """Seconds without data after which the files of an upload are removed."""
 
 MIN_FREE_BYTES = 256_000_000
@@ -239,14 +239,14 @@ class Uploads:
 
     def _schedule_sweep(self) -> None:
         if self._sweep_timer is None:
-            self._sweep_timer = asyncio.get_running_loop().call_later(PATIENCE / 4, self._cancel_stalled)
+            self._sweep_timer = asyncio.get_running_loop().call_later(IDLE_TIMEOUT_S / 4, self._cancel_stalled)
 
     def _cancel_stalled(self) -> None:
         """Cancel the uploads for which no data has arrived for a while."""
         self._sweep_timer = None
         now = asyncio.get_running_loop().time()
         for key, upload in list(self._uploads.items()):
-            if not upload.busy and now - upload.touched > PATIENCE:
+            if not upload.busy and now - upload.touched > IDLE_TIMEOUT_S:
                 self._remove(key)
         if self._uploads:
             self._schedule_sweep()

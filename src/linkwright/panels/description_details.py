@@ -65,10 +65,10 @@ class SourcePositions:
             element: the element from which the link or joint was read; None if it is unknown.
         """
         expanded_element = self._expanded_elements.get((tag, name))
-        expanded_range = None if expanded_element is None else _source_range(expanded_element)
+        expanded_range = None if expanded_element is None else _find_source_range(expanded_element)
         if element is None or element.source is None or element.source.name.startswith("<"):
             return Written(expanded_range, None, [])
-        return Written(expanded_range, _source_range(element), list(islice(_calls(element), _MAX_CALLS)))
+        return Written(expanded_range, _find_source_range(element), list(islice(_calls(element), _MAX_CALLS)))
 
 
 def _calls(element: Element) -> Iterator[CallSite]:
@@ -85,7 +85,7 @@ def _calls(element: Element) -> Iterator[CallSite]:
             yield CallSite(next(group).macro, span.file, span.line, span.column)
 
 
-def _source_range(element: Element) -> SourceRange | None:
+def _find_source_range(element: Element) -> SourceRange | None:
     """Return the source range of an element, or of its tag name if its end is unknown, or None."""
     offsets = element_range(element)
     span = element.span() if offsets is None or element.source is None else element.source.span(*offsets)
@@ -190,7 +190,7 @@ class SourceTexts:
     """
 
     def __init__(self, root: Element | None, files: Iterable[Path]) -> None:
-        self._read = _sources(root)
+        self._read = _index_sources(root)
         self._files: dict[str, Path] = {str(path): path for path in files}
 
     @property
@@ -215,7 +215,7 @@ class SourceTexts:
             return None
 
 
-def _sources(root: Element | None) -> dict[str, SourceText]:
+def _index_sources(root: Element | None) -> dict[str, SourceText]:
     """Return the source texts of the elements and of the calls that produced them, by file name."""
     sources: dict[str, SourceText] = {}
     visited_frames: set[int] = set()

@@ -312,14 +312,14 @@ class ToolsFeature(PageFeature):
         publisher.publish(message)
 
     def _stamped_message(
-        self, manager: VisualizationManager, kind: str | None, pose: Transform
+        self, manager: VisualizationManager, message_type: str | None, pose: Transform
     ) -> tuple[Any, list[float]]:
         """Return a message with a header, and the given pose in the frame of the header.
 
         The given pose is in the Fixed Frame. The caller must write the returned pose to the message.
         """
-        assert kind is not None
-        message = get_message(kind)()
+        assert message_type is not None
+        message = get_message(message_type)()
         message.header.frame_id, header_pose = self.context.transforms.in_known_frame(manager.fixed_frame, pose)
         message.header.stamp = self.context.node.get_clock().now().to_msg()
         return message, header_pose.tolist()

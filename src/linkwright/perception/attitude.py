@@ -28,6 +28,7 @@ from linkwright.geometry.single import (
 )
 
 GRAVITY = 9.80665
+"""The standard acceleration of gravity in m/s2."""
 _MIN_LENGTH = 1e-3
 """The minimum length of a vector with a usable direction, in m/s2 or as a fraction of a field."""
 _IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)

@@ -13,13 +13,14 @@ from linkwright.picture.camera import Camera
 from linkwright.picture.stroke_font import LINE_HEIGHT, text_lines
 from linkwright.picture.vectors import Floats
 
-_HEIGHT = 15.0
-"""The height of a line of text in pixels, for an image whose shorter side has `_USUAL_SIDE` pixels."""
-_USUAL_SIDE, _MIN_SCALE = 600.0, 0.75
-_PEN, _HALO, _DOT = 0.75, 2.6, 2.4
-"""In pixels: half the width of lines, the radius of the bright area around them, and the radius of the dots."""
-_OFFSET, _SPACING, _BORDER = 14.0, 2.0, 4.0
-_INK, _PAPER = 0.008, 0.96
+_TEXT_HEIGHT_PX = 15.0
+"""The height of a line of text in pixels, for an image whose shorter side has `_DEFAULT_SIDE_PX` pixels."""
+_DEFAULT_SIDE_PX, _MIN_SCALE = 600.0, 0.75
+_LINE_RADIUS_PX, _HALO_RADIUS_PX, _DOT_RADIUS_PX = 0.75, 2.6, 2.4
+"""Half the width of lines, the radius of the bright area around them, and the radius of the dots."""
+_TEXT_OFFSET_PX, _SPACING_PX, _BORDER_PX = 14.0, 2.0, 4.0
+"""The distances from a text to its anchor, to other texts, and to the border of the image."""
+_TEXT_BRIGHTNESS, _HALO_BRIGHTNESS = 0.008, 0.96
 """The brightness of the text and of the area around it."""
 
 
@@ -34,17 +35,17 @@ class _Placed:
 
     def overlaps(self, other: _Placed) -> bool:
         return all(
-            self.corner[axis] < other.corner[axis] + other.extent[axis] + _SPACING
-            and other.corner[axis] < self.corner[axis] + self.extent[axis] + _SPACING
+            self.corner[axis] < other.corner[axis] + other.extent[axis] + _SPACING_PX
+            and other.corner[axis] < self.corner[axis] + self.extent[axis] + _SPACING_PX
             for axis in (0, 1)
         )
 
 
-def draw_labels(light: Floats, alpha: Floats, anchors: Sequence[Anchor], camera: Camera) -> None:
+def draw_labels(colors: Floats, alpha: Floats, anchors: Sequence[Anchor], camera: Camera) -> None:
     """Draw labels over an image.
 
     Args:
-        light: the light of the pixels multiplied by their opacity, shape (height, width, 3), which is changed.
+        colors: the light of the pixels multiplied by their opacity, shape (height, width, 3), which is changed.
         alpha: the opacity of the pixels, shape (height, width), which is changed.
         anchors: the texts of the labels, and the points to which they belong.
         camera: the camera of the image.
@@ -52,46 +53,53 @@ def draw_labels(light: Floats, alpha: Floats, anchors: Sequence[Anchor], camera:
     if not anchors:
         return
     x, y, _ = camera.project(np.array([anchor.position for anchor in anchors]))
-    scale = max(min(camera.size) / _USUAL_SIDE, _MIN_SCALE)
+    scale = max(min(camera.size) / _DEFAULT_SIDE_PX, _MIN_SCALE)
     labels: list[_Placed] = []
-    for index in sorted(range(len(anchors)), key=lambda number: (float(y[number]), number)):
+    for index in sorted(range(len(anchors)), key=lambda index: (float(y[index]), index)):
         labels.append(_place(anchors[index].text, (float(x[index]), float(y[index])), labels, camera.size, scale))
     for label in labels:
-        _draw(light, alpha, _leader(label), _PEN * 0.7 * scale, _HALO * 0.5 * scale)
+        _draw(colors, alpha, _leader_line(label), _LINE_RADIUS_PX * 0.7 * scale, _HALO_RADIUS_PX * 0.5 * scale)
     for label in labels:
-        _draw(light, alpha, np.array([(label.anchor, label.anchor)]), _DOT * scale, (_DOT + 1.0) * scale)
+        _draw(
+            colors,
+            alpha,
+            np.array([(label.anchor, label.anchor)]),
+            _DOT_RADIUS_PX * scale,
+            (_DOT_RADIUS_PX + 1.0) * scale,
+        )
     for label in labels:
-        _draw(light, alpha, _letters(label), _PEN * scale, _HALO * scale)
+        _draw(colors, alpha, _letter_lines(label), _LINE_RADIUS_PX * scale, _HALO_RADIUS_PX * scale)
 
 
 def _place(
     text: str, anchor: tuple[float, float], others: Sequence[_Placed], size: tuple[int, int], scale: float
 ) -> _Placed:
     """Return a label next to its anchor, at the first position where it does not overlap another label."""
-    unit = _HEIGHT * scale / LINE_HEIGHT
-    extent = (text_lines(text)[1] * unit, _HEIGHT * scale)
-    is_left = anchor[0] + _OFFSET * scale + extent[0] + _BORDER > size[0]
-    x = anchor[0] - _OFFSET * scale - extent[0] if is_left else anchor[0] + _OFFSET * scale
-    x = min(max(x, _BORDER), max(_BORDER, size[0] - extent[0] - _BORDER))
-    top = min(max(anchor[1] - extent[1] / 2, _BORDER), size[1] - extent[1] - _BORDER)
-    step = extent[1] / 2 + _SPACING
-    for number in range(2 * int(size[1] / step) + 2):
-        shift = (number + 1) // 2 * (step if number % 2 else -step)
+    unit = _TEXT_HEIGHT_PX * scale / LINE_HEIGHT
+    extent = (text_lines(text)[1] * unit, _TEXT_HEIGHT_PX * scale)
+    is_left = anchor[0] + _TEXT_OFFSET_PX * scale + extent[0] + _BORDER_PX > size[0]
+    x = anchor[0] - _TEXT_OFFSET_PX * scale - extent[0] if is_left else anchor[0] + _TEXT_OFFSET_PX * scale
+    x = min(max(x, _BORDER_PX), max(_BORDER_PX, size[0] - extent[0] - _BORDER_PX))
+    top = min(max(anchor[1] - extent[1] / 2, _BORDER_PX), size[1] - extent[1] - _BORDER_PX)
+    step = extent[1] / 2 + _SPACING_PX
+    for attempt in range(2 * int(size[1] / step) + 2):
+        shift = (attempt + 1) // 2 * (step if attempt % 2 else -step)
         label = _Placed(text, anchor, (x, top + shift), extent)
-        is_inside = _BORDER <= label.corner[1] <= size[1] - extent[1] - _BORDER
+        is_inside = _BORDER_PX <= label.corner[1] <= size[1] - extent[1] - _BORDER_PX
         if is_inside and not any(label.overlaps(other) for other in others):
             return label
     return _Placed(text, anchor, (x, top), extent)
 
 
-def _leader(label: _Placed) -> Array:
+def _leader_line(label: _Placed) -> Array:
     """Return the line that connects an anchor to its text."""
     is_right = label.corner[0] > label.anchor[0]
-    x = label.corner[0] - _SPACING if is_right else label.corner[0] + label.extent[0] + _SPACING
+    x = label.corner[0] - _SPACING_PX if is_right else label.corner[0] + label.extent[0] + _SPACING_PX
     return np.array([(label.anchor, (x, label.corner[1] + label.extent[1] / 2))])
 
 
-def _letters(label: _Placed) -> Array:
+def _letter_lines(label: _Placed) -> Array:
+    """Return the lines of the letters of a label."""
     lines, _ = text_lines(label.text)
     unit = label.extent[1] / LINE_HEIGHT
     lines = lines * unit
@@ -100,24 +108,24 @@ def _letters(label: _Placed) -> Array:
     return lines
 
 
-def _draw(light: Floats, alpha: Floats, lines: Array, pen: float, halo: float) -> None:
+def _draw(colors: Floats, alpha: Floats, lines: Array, pen: float, halo: float) -> None:
     """Draw lines, shape (n, 2, 2) in pixels, with a bright area around them."""
     if not len(lines):
         return
     height, width = alpha.shape
-    reach = halo + 1.0
-    left, top = (int(max(0.0, np.floor(lines[:, :, axis].min() - reach))) for axis in (0, 1))
+    margin = halo + 1.0
+    left, top = (int(max(0.0, np.floor(lines[:, :, axis].min() - margin))) for axis in (0, 1))
     right, bottom = (
-        int(min(float(limit), np.ceil(lines[:, :, axis].max() + reach))) for axis, limit in ((0, width), (1, height))
+        int(min(float(limit), np.ceil(lines[:, :, axis].max() + margin))) for axis, limit in ((0, width), (1, height))
     )
     if right <= left or bottom <= top:
         return
     distances = _distances(lines, left, top, right, bottom)
     window = (slice(top, bottom), slice(left, right))
-    for radius, shade, strength in ((halo, _PAPER, 0.8), (pen, _INK, 1.0)):
-        cover = (np.clip(radius + 0.5 - distances, 0.0, 1.0) * strength).astype(np.float32)
-        light[window] = light[window] * (1.0 - cover)[:, :, None] + (cover * shade)[:, :, None]
-        alpha[window] = alpha[window] * (1.0 - cover) + cover
+    for radius, shade, strength in ((halo, _HALO_BRIGHTNESS, 0.8), (pen, _TEXT_BRIGHTNESS, 1.0)):
+        coverage = (np.clip(radius + 0.5 - distances, 0.0, 1.0) * strength).astype(np.float32)
+        colors[window] = colors[window] * (1.0 - coverage)[:, :, None] + (coverage * shade)[:, :, None]
+        alpha[window] = alpha[window] * (1.0 - coverage) + coverage
 
 
 def _distances(lines: Array, left: int, top: int, right: int, bottom: int) -> Array:
@@ -126,8 +134,8 @@ def _distances(lines: Array, left: int, top: int, right: int, bottom: int) -> Ar
     nearest = np.full((bottom - top, right - left), 1e12)
     for (x0, y0), (x1, y1) in lines.tolist():
         across, down = x1 - x0, y1 - y0
-        square = across * across + down * down
-        ratio = ((x - x0) * across + (y - y0) * down) / square if square > 0 else np.zeros_like(nearest)
+        squared_length = across * across + down * down
+        ratio = ((x - x0) * across + (y - y0) * down) / squared_length if squared_length > 0 else np.zeros_like(nearest)
         ratio = np.clip(ratio, 0.0, 1.0)
         dx, dy = x - (x0 + ratio * across), y - (y0 + ratio * down)
         np.minimum(nearest, dx * dx + dy * dy, out=nearest)

@@ -82,14 +82,14 @@ class SurfaceLibrary:
     def _read(self, path: Path, size: int, *, with_names: bool) -> list[MeshSurface]:
         return [
             MeshSurface(Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
-            for part in self._parts(path, size, with_names=with_names)
+            for part in self._read_parts(path, size, with_names=with_names)
             if len(part.triangles.indices)
         ]
 
-    def _parts(self, path: Path, size: int, *, with_names: bool) -> list[MeshPart]:
+    def _read_parts(self, path: Path, size: int, *, with_names: bool) -> list[MeshPart]:
         kind = path.suffix.lower()
         if size > MAX_FILE_SIZE or kind == ".stl" or kind not in MESH_ENDINGS or not path.is_file():
-            return [_plain_part(path)]
+            return [_read_plain_part(path)]
         simple_parts = None if with_names else read_simple_parts(path)
         if simple_parts is not None:
             return simple_parts
@@ -100,7 +100,7 @@ class SurfaceLibrary:
         except LinkwrightError as error:
             if error.diagnostics[0].code != _MISSING_EXTRA:
                 raise
-            part = _plain_part(path)
+            part = _read_plain_part(path)
             self.errors_of_colorless_files[path] = error
             return [part]
 
@@ -112,7 +112,7 @@ def _resolver(path: Path) -> object:
         return None  # the reader reports the missing library
 
 
-def _plain_part(path: Path) -> MeshPart:
+def _read_plain_part(path: Path) -> MeshPart:
     """Return the triangles of a mesh file as one surface without its colors."""
     mesh = read_mesh(path)
     return MeshPart(Triangles(mesh.vertices, np.asarray(mesh.faces, np.int64).reshape(-1)), None)

@@ -34,6 +34,7 @@ _LINE_REACH = 8
 _PEELED_LAYERS = 3
 """The maximum number of transparent surfaces drawn behind each other."""
 _GHOST_ALPHA = 0.38
+"""The opacity of a ghost, from 0 to 1."""
 _EDGE_LIGHT = 0.012
 _UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
 """The colors of the background at the top and at the bottom."""
@@ -93,7 +94,7 @@ class _Renderer:
         self._shadow = shadow_map(mesh, lights.key) if is_on_ground else None
         self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
         self._anchors = {None: (), "links": scene.labels.links, "joints": scene.labels.joints}[style.labels]
-        numbers = {id(body): number for number, body in enumerate(dict.fromkeys(mesh.bodies))}
+        numbers = {id(body): index for index, body in enumerate(dict.fromkeys(mesh.bodies))}
         self._body_numbers = np.array([numbers[id(body)] for body in mesh.bodies], np.int32)
 
     def image(self) -> Image:

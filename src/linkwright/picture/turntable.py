@@ -56,8 +56,8 @@ def turning_cameras(view: View, size: tuple[int, int], points: Array, count: int
     first = fitting_camera(view, size, [_swept(points, pivot)])
     axes = (first.right, first.up, first.toward)
     offset = [middle - dot(pivot, axis) for middle, axis in zip(first.center, axes, strict=True)]
-    for number in range(count):
-        right, up, toward = camera_axes(replace(view, azimuth=view.azimuth + 360.0 * number / count))
+    for index in range(count):
+        right, up, toward = camera_axes(replace(view, azimuth=view.azimuth + 360.0 * index / count))
         center = add_vectors((dot(pivot, right), dot(pivot, up), dot(pivot, toward)), (offset[0], offset[1], offset[2]))
         yield replace(first, right=right, up=up, toward=toward, center=center)
 

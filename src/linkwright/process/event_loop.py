@@ -1,8 +1,8 @@
-"""Runs a coroutine as Python 3.11's ``asyncio.run`` does, with a callback before it.
+"""Run a coroutine as Python 3.11's ``asyncio.run`` does, with a callback before it.
 
 The callback is called when the loop exists, because interrupting the creation of a loop prints an error. Ctrl-C cancels
-the coroutine. Elsewhere, a KeyboardInterrupt could abort an import. On Python 3.10, the import lock would then remain
-locked for other threads that import the same module.
+the coroutine. If Ctrl-C raised KeyboardInterrupt at any other point, it could abort an import. On Python 3.10, the
+import lock would then remain locked for other threads that import the same module.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 
-def run_coroutine(create: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], object]) -> T:
+def run_coroutine(create_coroutine: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], object]) -> T:
     """Run a coroutine on a new event loop, and return its result.
 
     Args:
-        create: returns the coroutine.
+        create_coroutine: returns the coroutine.
         on_ready: called when the loop exists, before the coroutine starts. From then on, KeyboardInterrupt may be
             raised.
 
@@ -32,19 +32,19 @@ def run_coroutine(create: Callable[[], Coroutine[Any, Any, T]], on_ready: Callab
         with asyncio.Runner() as runner:
             runner.get_loop()
             on_ready()
-            return runner.run(create())
+            return runner.run(create_coroutine())
     else:
-        return _run(create, on_ready)
+        return _run(create_coroutine, on_ready)
 
 
-def _run(create: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], object]) -> T:
+def _run(create_coroutine: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], object]) -> T:
     """Run a coroutine like `asyncio.Runner`, which Python 3.10 does not have."""
     loop = asyncio.new_event_loop()
     try:
         asyncio.set_event_loop(loop)
         on_ready()
-        task = loop.create_task(create())
-        interruptions = _Interruptions(loop, task)
+        task = loop.create_task(create_coroutine())
+        interruptions = _CancelOnInterrupt(loop, task)
         with interruptions:
             try:
                 return loop.run_until_complete(task)
@@ -62,7 +62,7 @@ def _run(create: Callable[[], Coroutine[Any, Any, T]], on_ready: Callable[[], ob
             loop.close()
 
 
-class _Interruptions:
+class _CancelOnInterrupt:
     """A context in which Ctrl-C cancels a task.
 
     Each later Ctrl-C raises KeyboardInterrupt.
@@ -73,7 +73,7 @@ class _Interruptions:
     def __init__(self, loop: asyncio.AbstractEventLoop, task: asyncio.Task[Any]) -> None:
         self.count = 0
         self._loop = loop
-        self._main = task
+        self._task = task
 
     def __enter__(self) -> None:
         self._is_installed = (
@@ -89,9 +89,9 @@ class _Interruptions:
 
     def _handle(self, _number: int, _frame: object) -> None:
         self.count += 1
-        if self.count > 1 or self._main.done():
+        if self.count > 1 or self._task.done():
             raise KeyboardInterrupt
-        self._main.cancel()
+        self._task.cancel()
         self._loop.call_soon_threadsafe(lambda: None)  # wake the loop, which may be waiting only for files
 
 

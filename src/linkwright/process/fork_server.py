@@ -137,8 +137,8 @@ def _become(request: Request) -> None:
     os.setsid()
     os.write(request.report, NUMBER.pack(os.getpid()))
     os.close(request.report)
-    for number, stream in enumerate(request.streams):
-        os.dup2(stream, number)
+    for descriptor, stream in enumerate(request.streams):
+        os.dup2(stream, descriptor)
         os.close(stream)
     importlib.invalidate_caches()
     os.chdir(request.folder)

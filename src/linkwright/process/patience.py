@@ -7,7 +7,7 @@ import os
 import time
 from collections.abc import Iterator
 
-_NANOSECOND = 1e-9
+_SECONDS_PER_NANOSECOND = 1e-9
 _MAX_SLOWDOWN = 10.0
 """The clock is slower than real time by at most this factor."""
 
@@ -63,7 +63,7 @@ def _usages_below(root: int) -> Iterator[tuple[str, tuple[float, float]]]:
             for thread in os.listdir(folder):  # noqa: PTH208 - read often
                 with contextlib.suppress(OSError, ValueError):
                     run, wait, _ = map(int, _read(f"{folder}/{thread}/schedstat").split())
-                    yield thread, (run * _NANOSECOND, wait * _NANOSECOND)
+                    yield thread, (run * _SECONDS_PER_NANOSECOND, wait * _SECONDS_PER_NANOSECOND)
                 with contextlib.suppress(OSError):  # not supported by all kernels
                     waiting += map(int, _read(f"{folder}/{thread}/children").split())
 

@@ -8,10 +8,10 @@ from typing import Any
 
 from linkwright.graph.parameters.client import AsyncParameterClient
 
-_PATIENCE = 5.0
+_RESPONSE_TIMEOUT_S = 5.0
 """Seconds to wait for the services to appear, and for each response."""
 
-_POLL_INTERVAL = 0.05
+_POLL_INTERVAL_S = 0.05
 
 
 class NoAnswerError(Exception):
@@ -28,11 +28,11 @@ async def wait_for_services(client: AsyncParameterClient) -> None:
         NoAnswerError: the services are not available in time.
     """
     loop = asyncio.get_running_loop()
-    deadline = loop.time() + _PATIENCE
+    deadline = loop.time() + _RESPONSE_TIMEOUT_S
     while not client.services_are_ready():
         if loop.time() > deadline:
             raise NoAnswerError(f"node '{client.remote_node_name}' does not offer its parameters")
-        await asyncio.sleep(_POLL_INTERVAL)
+        await asyncio.sleep(_POLL_INTERVAL_S)
 
 
 async def wait_for_response(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
@@ -46,6 +46,6 @@ async def wait_for_response(client: AsyncParameterClient, future: Awaitable[Any]
         return await future
 
     try:
-        return await asyncio.wait_for(wait(), _PATIENCE)
+        return await asyncio.wait_for(wait(), _RESPONSE_TIMEOUT_S)
     except asyncio.TimeoutError:
-        raise NoAnswerError(f"node '{client.remote_node_name}' did not answer in {_PATIENCE:g} s") from None
+        raise NoAnswerError(f"node '{client.remote_node_name}' did not answer in {_RESPONSE_TIMEOUT_S:g} s") from None

@@ -339,22 +339,22 @@ class SceneBuilder:
             name=link.name,
             frame=frame_of(link.name, prefix),
             parent_joint=parent_joint,
-            visuals=self._shapes(link, link.visuals),
-            collisions=self._shapes(link, link.collisions, first_material),
+            visuals=self._make_shapes(link, link.visuals),
+            collisions=self._make_shapes(link, link.collisions, first_material),
             place=place_of(link.element),
             inertia=link_inertia(link.inertial),
         )
 
-    def _shapes(
+    def _make_shapes(
         self, link: Link, elements: Sequence[Visual | Collision], material: Material | None = None
     ) -> list[Shape]:
         shapes = (
-            self._shape(link, element, element.material if isinstance(element, Visual) else material)
+            self._make_shape(link, element, element.material if isinstance(element, Visual) else material)
             for element in elements
         )
         return [shape for shape in shapes if shape is not None]
 
-    def _shape(self, link: Link, element: Visual | Collision, material: Material | None) -> Shape | None:
+    def _make_shape(self, link: Link, element: Visual | Collision, material: Material | None) -> Shape | None:
         geometry = element.geometry
         shape = Shape(
             kind="mesh",

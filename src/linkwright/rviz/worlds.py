@@ -95,18 +95,20 @@ class _Builder:
                 name=placed_link.name,
                 frame=placed_link.name,
                 parent_joint=None,
-                visuals=list(self._shapes(placed_link.name, link.visuals, pose)),
-                collisions=list(self._shapes(placed_link.name, link.collisions, pose)),
+                visuals=list(self._make_shapes(placed_link.name, link.visuals, pose)),
+                collisions=list(self._make_shapes(placed_link.name, link.collisions, pose)),
             )
         )
 
-    def _shapes(self, link: str, elements: Sequence[Visual | Collision], pose_in_link: _PoseInLink) -> Iterator[Shape]:
+    def _make_shapes(
+        self, link: str, elements: Sequence[Visual | Collision], pose_in_link: _PoseInLink
+    ) -> Iterator[Shape]:
         for element in elements:
-            shape = self._shape(link, element, pose_in_link(element.pose))
+            shape = self._make_shape(link, element, pose_in_link(element.pose))
             if shape is not None:
                 yield shape
 
-    def _shape(self, link: str, element: Visual | Collision, pose: Transform) -> Shape | None:
+    def _make_shape(self, link: str, element: Visual | Collision, pose: Transform) -> Shape | None:
         shape = Shape(kind="mesh", size=[], position=[], quaternion=[], name=element.name)
         if isinstance(element, Visual):
             self._set_material(link, shape, element)

@@ -17,8 +17,10 @@ def describe_element(rule: ElementRule) -> Phrase:
     value_children = [] if rule.choice else [child for child in rule.children if child.is_value]
     lines += [phrase("- {line}", line=_describe_value(child)) for child in value_children]
     other_children = (child for child in rule.children if child not in value_children)
-    child_texts = [_with_count(child.tag, is_repeated=child.many, required=child.required) for child in other_children]
-    child_texts += [_with_count(rule.tag, is_repeated=True, required=False)] if rule.nests else []
+    child_texts = [
+        _with_count(child.tag, is_repeated=child.is_repeated, required=child.required) for child in other_children
+    ]
+    child_texts += [_with_count(rule.tag, is_repeated=True, required=False)] if rule.is_recursive else []
     if child_texts:
         elements = joined(child_texts)
         lines.append(
@@ -43,7 +45,7 @@ def _describe_value(rule: ElementRule) -> Phrase:
     """Return a line of Markdown about an element with a single value, as for an attribute."""
     assert rule.text is not None
     facts = _facts(rule.text)
-    if rule.many:
+    if rule.is_repeated:
         facts.append(phrase("any number"))
     name = f"`<{rule.tag}>`"
     return phrase("{name}: {meaning} ({facts})", name=name, meaning=term(rule.meaning), facts=joined(facts))

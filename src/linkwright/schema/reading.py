@@ -55,7 +55,7 @@ def is_cached(rule: ElementRule) -> bool:
 
     Such elements have only attributes, and at least one of these is not a plain text.
     """
-    only_attributes = not (rule.children or rule.nests or rule.located or rule.text is not None)
+    only_attributes = not (rule.children or rule.is_recursive or rule.passes_element or rule.text is not None)
     return only_attributes and any(attribute.type.read is not str for attribute in rule.attributes)
 
 
@@ -93,15 +93,15 @@ def nested_source(rule: ElementRule, version: Version) -> str:
     lines = ["given = element.attributes"]
     for name, attribute in attributes:
         lines += _attribute_lines(name, attribute, version)
-    if rule.owns:
+    if rule.is_owner:
         lines.append("owner = element")
-    lines += [f"{name} = {'[]' if child.many else 'None'}" for name, child in children]
-    lines += ["nested = []"] if rule.nests else []
+    lines += [f"{name} = {'[]' if child.is_repeated else 'None'}" for name, child in children]
+    lines += ["nested = []"] if rule.is_recursive else []
     lines += ["for child in element.children:", "    if not isinstance(child, Element):", "        continue"]
     lines.append("    tag, inner = child.tag, child.attributes")
     for name, child in children:
         lines += [f"    {line}" for line in _child_lines(name, child)]
-    if rule.nests:
+    if rule.is_recursive:
         lines += [f"    if tag == {rule.tag!r}:", "        nested.append(read(child, owner, report))"]
     for name, child in children:
         if child.required:
@@ -110,8 +110,8 @@ def nested_source(rule: ElementRule, version: Version) -> str:
     lines += _unreadable_lines(rule, [name for name, _ in attributes], children)
     fields = [f"{attribute.target}={name}" for name, attribute in attributes]
     fields += [field for name, child in children for field in _fields(name, child)]
-    fields += [f"{rule.target}=tuple(nested)"] if rule.nests else []
-    fields += ["element=element"] if rule.located else []
+    fields += [f"{rule.target}=tuple(nested)"] if rule.is_recursive else []
+    fields += ["element=element"] if rule.passes_element else []
     lines.append(f"value = make({', '.join(fields)})")
     lines.append("return value" if rule.check is None else "return check(value, element, owner, report)")
     return _function_source(lines)
@@ -139,7 +139,7 @@ def _child_lines(name: str, child: ElementRule) -> Iterator[str]:
     if is_cached(child):
         read = f"{name}_memory.get(key := (*inner, *inner.values())) or {name}_read(child, owner, report, key)"
     yield f"if tag == {child.tag!r}:"
-    if child.many:
+    if child.is_repeated:
         yield f"    {name}.append({read})"
     else:
         yield f"    if {name} is None:"
@@ -151,15 +151,15 @@ def _unreadable_lines(
     rule: ElementRule, attributes: list[str], children: list[tuple[str, ElementRule]]
 ) -> Iterator[str]:
     """Yield the lines of generated code that handle unreadable parts of an element."""
-    singles = [*attributes, *(name for name, child in children if not child.many)]
-    if rule.keeps:
+    singles = [*attributes, *(name for name, child in children if not child.is_repeated)]
+    if rule.keeps_element:
         for name in singles:
             yield f"if {name} is UNREADABLE:"
             yield f"    {name} = {name}_absent" if name in attributes else f"    {name} = None"
         return
     tests = [f"{name} is UNREADABLE" for name in singles]
-    tests += [f"any(value is UNREADABLE for value in {name})" for name, child in children if child.many]
-    tests += ["any(value is UNREADABLE for value in nested)"] if rule.nests else []
+    tests += [f"any(value is UNREADABLE for value in {name})" for name, child in children if child.is_repeated]
+    tests += ["any(value is UNREADABLE for value in nested)"] if rule.is_recursive else []
     yield f"if {' or '.join(tests)}:"
     yield "    return UNREADABLE"
 
@@ -169,7 +169,7 @@ def _fields(name: str, child: ElementRule) -> Iterator[str]:
     if child.is_inline:
         for index, attribute in enumerate(child.values):
             yield f"{attribute.target}=({name}_absent if {name} is None else {name})[{index}]"
-    elif child.many:
+    elif child.is_repeated:
         yield f"{child.target}=tuple({name})"
     else:
         yield f"{child.target}={name}_absent if {name} is None else {name}"
@@ -247,7 +247,7 @@ def reader_of(rule: ElementRule, version: Version) -> ElementReader:
     """Return the reader for elements of a rule in files of a version."""
     if rule.choice:
         return _choice_reader(rule, version)
-    if rule.children or rule.nests or rule.located:
+    if rule.children or rule.is_recursive or rule.passes_element:
         return _nested_reader(rule, version)
     return _flat_reader(rule, version)
 

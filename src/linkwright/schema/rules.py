@@ -40,7 +40,7 @@ class AttributeRule:
         since: the version that added the attribute; in files of older versions it is ignored.
         until: the version that made a required attribute optional, or None.
         later_default: a version, and the default from this version on.
-        usual: whether the attribute is usually written although it is not required.
+        usually_written: whether the attribute is usually written although it is not required.
         field: the field of the object that stores the value; by default, the field with the attribute's name.
         get: the function that returns the value to write from the object, if this is not simply the field.
     """
@@ -54,7 +54,7 @@ class AttributeRule:
     since: Version = (1, 0)
     until: Version | None = None
     later_default: tuple[Version, Any] | None = None
-    usual: bool = False
+    usually_written: bool = False
     field: str = ""
     get: Callable[[Any], Any] | None = None
 
@@ -86,26 +86,26 @@ class ElementRule:
         tag: the element's name.
         meaning: one phrase for hover texts and documentation.
         attribute_rules: the rules of the attributes, by name.
-        child_rules: the rules of the children, by tag, including the element's own tag if it nests.
+        child_rules: the rules of the children, by tag, including the element's own tag if it is recursive.
         attributes: the rules of the attributes, in the order of the documentation.
         children: the rules of the children that are read, in the order in which they are written.
         required: whether the parent element cannot be read without this element.
-        many: whether all elements with the tag are read; otherwise, only the first element is read.
+        is_repeated: whether all elements with the tag are read; otherwise, only the first element is read.
         since: the version that added the element.
         text: the rule of the text inside, for an element whose value is its text.
         choice: whether the first child selects one of several kinds, so that its object is the object of this element.
         make: the function that creates the object from keyword arguments: the fields of attributes and children. The
             object must not be false. None if the values are fields of the parent's object, as for
             ``<mass value="1"/>``.
-        located: whether `make` receives the element as the argument ``element``.
+        passes_element: whether `make` receives the element as the argument ``element``.
         field: the field of the parent's object; by default, the field with the name of the tag.
         get: the function that returns the value to write from the parent's object, if this is not simply the field.
         default: the default of an absent element: an object, or the tuple of values for the fields of the parent's
             object.
-        owns: whether messages about the contents of the element name this element, as for the color of a material.
-        keeps: whether an element with unreadable parts still results in an object, with defaults for these parts. An
-            unreadable part that may occur many times is `UNREADABLE`.
-        nests: whether the element may contain elements of its own kind.
+        is_owner: whether messages about the contents of the element name this element, as for the color of a material.
+        keeps_element: whether an element with unreadable parts still results in an object, with defaults for these
+            parts. An unreadable part that may occur many times is `UNREADABLE`.
+        is_recursive: whether the element may contain elements of its own kind.
         check: the function that checks a value, given its element, its owner and the report. It returns the value to
             use instead, or `UNREADABLE`.
     """
@@ -117,23 +117,23 @@ class ElementRule:
     attributes: tuple[AttributeRule, ...] = ()
     children: tuple[ElementRule, ...] = ()
     required: bool = False
-    many: bool = False
+    is_repeated: bool = False
     since: Version = (1, 0)
     text: AttributeRule | None = None
     choice: bool = False
     make: Callable[..., Any] | None = None
-    located: bool = False
+    passes_element: bool = False
     field: str = ""
     get: Callable[[Any], Any] | None = None
     default: Any = None
-    owns: bool = False
-    keeps: bool = False
-    nests: bool = False
+    is_owner: bool = False
+    keeps_element: bool = False
+    is_recursive: bool = False
     check: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "attribute_rules", {rule.name: rule for rule in self.attributes})
-        own_rule = {self.tag: self} if self.nests else {}
+        own_rule = {self.tag: self} if self.is_recursive else {}
         object.__setattr__(self, "child_rules", {rule.tag: rule for rule in self.children} | own_rule)
 
     @property

@@ -1,4 +1,4 @@
-"""Convert objects to elements, by the same rules by which elements are read."""
+"""Convert objects to elements, by the rules for reading; XX elements are read."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def write_element(rule: ElementRule, instance: Any, complete: Completion | None 
         element.children.append(Text(inner_text))
     for child in rule.children:
         element.children += _child_elements(child, instance, complete)
-    if rule.nests:
+    if rule.is_recursive:
         element.children += (write_element(rule, item, complete) for item in rule.value_in(instance))
     if complete is not None and not rule.is_inline:
         complete(element, rule, instance)
@@ -48,8 +48,8 @@ def _child_elements(rule: ElementRule, instance: Any, complete: Completion | Non
             yield element
         return
     value = rule.value_in(instance)
-    for item in value if rule.many else (value,):
-        if item is not None and (item != rule.default or (rule.located and item is not rule.default)):
+    for item in value if rule.is_repeated else (value,):
+        if item is not None and (item != rule.default or (rule.passes_element and item is not rule.default)):
             yield write_element(rule, item, complete)
 
 
@@ -57,7 +57,7 @@ def _text(attribute: AttributeRule, instance: Any) -> str | None:
     value = attribute.value_in(instance)
     if value is None:
         return None
-    is_optional = attribute.default is not None and not (attribute.required or attribute.usual)
+    is_optional = attribute.default is not None and not (attribute.required or attribute.usually_written)
     if is_optional and value == attribute.absent_value((1, 0)):
         return None
     return attribute.type.write(value)

@@ -180,8 +180,8 @@ CAMERA = ElementRule(
         value("trigger_topic", TEXT, "the topic on which images are requested", default=""),
         value("visibility_mask", INTEGER, "a bit mask of the visuals that are visible", default="4294967295"),
     ),
-    many=True,
+    is_repeated=True,
     make=_create_camera,
-    keeps=True,
+    keeps_element=True,
     field="cameras",
 )

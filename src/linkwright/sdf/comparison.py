@@ -40,11 +40,11 @@ def have_equal_content(first: Any, second: Any) -> bool:
 def _have_same_content(first: Element | None, second: Element | None) -> bool:
     if first is None or second is None:
         return first is second
-    return _content(first) == _content(second)
+    return _list_content(first) == _list_content(second)
 
 
-def _content(element: Element) -> tuple[object, ...]:
-    children = tuple(map(_content, element.elements()))
+def _list_content(element: Element) -> tuple[object, ...]:
+    children = tuple(map(_list_content, element.elements()))
     return element.tag, element.attributes, element.text().split(), children
 
 

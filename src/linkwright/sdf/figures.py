@@ -47,8 +47,8 @@ def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
     if actor.skin is not None and hips is None:
         visuals = tuple(
-            Visual(f"{_SKIN_NAME}{number}", shape, RawPose(Pose(position)), material, element=actor.element)
-            for number, (shape, position, material) in enumerate(_PERSON_SHAPES)
+            Visual(f"{_SKIN_NAME}{index}", shape, RawPose(Pose(position)), material, element=actor.element)
+            for index, (shape, position, material) in enumerate(_PERSON_SHAPES)
         )
         links.append(Link(_SKIN_NAME, visuals=visuals, element=actor.element))
     elif actor.skin is not None and hips is not None:

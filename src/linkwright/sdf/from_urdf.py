@@ -161,8 +161,8 @@ class _Converter:
         ]
         return replace(
             extension,
-            pose=self._pose(body),
-            inertial=_inertial(body.parts) or self._inertial_for_massless(link),
+            pose=self._convert_pose(body),
+            inertial=_combine_inertials(body.parts) or self._inertial_for_massless(link),
             visuals=(*_visuals(body, extensions), *extension.visuals),
             collisions=(*_collisions(body, extensions), *extension.collisions),
             sensors=(*extension.sensors, *sensors),
@@ -186,7 +186,7 @@ class _Converter:
             else None
         )
 
-    def _pose(self, body: Body) -> RawPose:
+    def _convert_pose(self, body: Body) -> RawPose:
         """Return the pose of a body's link, in the frame of its joint or in its parent link.
 
         In the frame of its joint, the pose is zero.
@@ -273,7 +273,7 @@ def _pose_in_body(pose: Pose, part: Part) -> RawPose:
     return RawPose(pose if part.joint is None else pose_of(compose(part.pose, transform_of(pose))))
 
 
-def _inertial(parts: Sequence[Part]) -> Inertial | None:
+def _combine_inertials(parts: Sequence[Part]) -> Inertial | None:
     first = parts[0].link.inertial
     if any(part.link.inertial for part in parts[1:]):
         from linkwright.sdf.lumping import lump_inertials  # delays the import of numpy

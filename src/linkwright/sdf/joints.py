@@ -131,7 +131,7 @@ class _Physics:
     ode: _Physics | None = None
 
 
-def _axis(xyz: tuple[Vector3, str] | None, use_parent_model_frame: bool, **options: Any) -> Axis:
+def _make_axis(xyz: tuple[Vector3, str] | None, use_parent_model_frame: bool, **options: Any) -> Axis:
     direction, expressed_in = xyz or ((0.0, 0.0, 1.0), "")
     return Axis(direction, expressed_in or (MODEL if use_parent_model_frame else ""), **options)
 
@@ -166,9 +166,9 @@ def _joint(
     return Joint(thread_pitch=screw_thread_pitch, provide_feedback=is_force_measured, **parts)
 
 
-def _axis_rule(tag: str, meaning: str) -> ElementRule:
+def _make_axis_rule(tag: str, meaning: str) -> ElementRule:
     return object_rule(
-        _axis,
+        _make_axis,
         tag,
         meaning,
         ElementRule(
@@ -184,7 +184,7 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
                 VECTOR3,
                 "the direction, a unit vector",
                 default="0 0 1",
-                usual=True,
+                usually_written=True,
                 field="axis",
                 get=lambda axis: axis.xyz,
             ),
@@ -249,8 +249,8 @@ JOINT = ElementRule(
         POSE,
         value("parent", TEXT, "the parent link or frame, or world", default="", required=True),
         value("child", TEXT, "the child link or frame", default="", required=True),
-        _axis_rule("axis", "the axis of motion"),
-        _axis_rule("axis2", "the second axis of motion"),
+        _make_axis_rule("axis", "the axis of motion"),
+        _make_axis_rule("axis2", "the second axis of motion"),
         value(
             "screw_thread_pitch",
             NUMBER,
@@ -287,10 +287,10 @@ JOINT = ElementRule(
         ),
         SENSOR,
     ),
-    many=True,
+    is_repeated=True,
     make=_joint,
-    keeps=True,
-    located=True,
-    owns=True,
+    keeps_element=True,
+    passes_element=True,
+    is_owner=True,
     field="joints",
 )

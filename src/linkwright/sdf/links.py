@@ -14,7 +14,7 @@ from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
 from linkwright.sdf.sensors import SENSOR, Sensor
 from linkwright.sdf.shapes import GEOMETRY, NO_SHAPE, Shape
-from linkwright.sdf.surfaces import SURFACE, USUAL_SURFACE, Surface
+from linkwright.sdf.surfaces import DEFAULT_SURFACE, SURFACE, Surface
 from linkwright.sdf.values import INTEGER, NUMBER, TRUTH, name_of, object_rule, value
 from linkwright.xmltree import Element
 
@@ -89,7 +89,7 @@ class Collision:
     name: str
     geometry: Shape = NO_SHAPE
     pose: RawPose = AT_ORIGIN
-    surface: Surface = USUAL_SURFACE
+    surface: Surface = DEFAULT_SURFACE
     density: float | None = None
     laser_retro: float | None = None
     max_contacts: int = 10
@@ -133,9 +133,9 @@ class Link:
 
 
 _TENSOR = (
-    value("ixx", NUMBER, "the xx component", "kg m2", default="1", usual=True),
-    value("iyy", NUMBER, "the yy component", "kg m2", default="1", usual=True),
-    value("izz", NUMBER, "the zz component", "kg m2", default="1", usual=True),
+    value("ixx", NUMBER, "the xx component", "kg m2", default="1", usually_written=True),
+    value("iyy", NUMBER, "the yy component", "kg m2", default="1", usually_written=True),
+    value("izz", NUMBER, "the zz component", "kg m2", default="1", usually_written=True),
     value("ixy", NUMBER, "the xy component", "kg m2", default="0"),
     value("ixz", NUMBER, "the xz component", "kg m2", default="0"),
     value("iyz", NUMBER, "the yz component", "kg m2", default="0"),
@@ -146,7 +146,7 @@ INERTIAL = ElementRule(
     "the mass properties",
     (AttributeRule("auto", TRUTH, "whether to compute the mass properties from the collisions", default="false"),),
     (
-        value("mass", NUMBER, "the mass", "kg", default="1", usual=True),
+        value("mass", NUMBER, "the mass", "kg", default="1", usually_written=True),
         POSE,
         object_rule(
             Inertia,
@@ -158,8 +158,8 @@ INERTIAL = ElementRule(
         value("density", NUMBER, "the density for computed mass properties", "kg/m3"),
     ),
     make=Inertial,
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
 )
 
 VISUAL = ElementRule(
@@ -176,11 +176,11 @@ VISUAL = ElementRule(
         value("visibility_flags", INTEGER, "the bits that visibility masks of cameras select", default="4294967295"),
         PLUGIN,
     ),
-    many=True,
+    is_repeated=True,
     make=Visual,
-    keeps=True,
-    located=True,
-    owns=True,
+    keeps_element=True,
+    passes_element=True,
+    is_owner=True,
     field="visuals",
 )
 
@@ -196,11 +196,11 @@ COLLISION = ElementRule(
         value("laser_retro", NUMBER, "the intensity with which a laser is reflected"),
         value("max_contacts", INTEGER, "the maximum number of contact points with another shape", default="10"),
     ),
-    many=True,
+    is_repeated=True,
     make=Collision,
-    keeps=True,
-    located=True,
-    owns=True,
+    keeps_element=True,
+    passes_element=True,
+    is_owner=True,
     field="collisions",
 )
 
@@ -228,10 +228,10 @@ LINK = ElementRule(
             default=Decay(),
         ),
     ),
-    many=True,
+    is_repeated=True,
     make=Link,
-    keeps=True,
-    located=True,
-    owns=True,
+    keeps_element=True,
+    passes_element=True,
+    is_owner=True,
     field="links",
 )

@@ -17,26 +17,26 @@ def list_contents(sdf: Sdf) -> str:
     """
     lines: list[str] = []
     for world in sdf.worlds:
-        lines += [_line(0, phrase("world {name}", name=world.name)), *_world_lines(world)]
+        lines += [_format_line(0, phrase("world {name}", name=world.name)), *_format_world(world)]
     for model in sdf.models:
-        lines += _model_lines(model, 0)
-    return "".join(f"{line}\n" for line in (*lines, *_actor_and_light_lines(sdf, 0)))
+        lines += _format_model(model, 0)
+    return "".join(f"{line}\n" for line in (*lines, *_format_actors_and_lights(sdf, 0)))
 
 
-def _world_lines(world: World) -> Iterator[str]:
+def _format_world(world: World) -> Iterator[str]:
     for model in world.models:
-        yield from _model_lines(model, 1)
-    yield from _actor_and_light_lines(world, 1)
-    yield from (_line(1, phrase("{uri}: not found", uri=include.uri)) for include in world.includes)
+        yield from _format_model(model, 1)
+    yield from _format_actors_and_lights(world, 1)
+    yield from (_format_line(1, phrase("{uri}: not found", uri=include.uri)) for include in world.includes)
 
 
-def _actor_and_light_lines(owner: Sdf | World, level: int) -> Iterator[str]:
-    yield from (_line(level, phrase("actor {name}", name=actor.name)) for actor in owner.actors)
+def _format_actors_and_lights(owner: Sdf | World, level: int) -> Iterator[str]:
+    yield from (_format_line(level, phrase("actor {name}", name=actor.name)) for actor in owner.actors)
     for light in owner.lights:
-        yield _line(level, phrase("light {name}: {kind}", name=light.name, kind=term(light.type)))
+        yield _format_line(level, phrase("light {name}: {kind}", name=light.name, kind=term(light.type)))
 
 
-def _model_lines(model: Model, level: int) -> Iterator[str]:
+def _format_model(model: Model, level: int) -> Iterator[str]:
     sensors = sum(len(link.sensors) for link in model.links)
     counts = joined(
         [
@@ -47,13 +47,13 @@ def _model_lines(model: Model, level: int) -> Iterator[str]:
         ]
     )
     if model.static:
-        yield _line(level, phrase("static model {name}: {parts}", name=model.name, parts=counts))
+        yield _format_line(level, phrase("static model {name}: {parts}", name=model.name, parts=counts))
     else:
-        yield _line(level, phrase("model {name}: {parts}", name=model.name, parts=counts))
+        yield _format_line(level, phrase("model {name}: {parts}", name=model.name, parts=counts))
     for nested_model in model.models:
-        yield from _model_lines(nested_model, level + 1)
-    yield from (_line(level + 1, phrase("{uri}: not found", uri=include.uri)) for include in model.includes)
+        yield from _format_model(nested_model, level + 1)
+    yield from (_format_line(level + 1, phrase("{uri}: not found", uri=include.uri)) for include in model.includes)
 
 
-def _line(level: int, text: Phrase) -> str:
+def _format_line(level: int, text: Phrase) -> str:
     return "  " * level + localized(text)

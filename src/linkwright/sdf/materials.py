@@ -141,7 +141,7 @@ MATERIAL = object_rule(
         (AttributeRule("type", TEXT, "the type: vertex, pixel or a type with a normal map", default="pixel"),),
         (value("normal_map", TEXT, "the normal map", default=""),),
         make=Shader,
-        keeps=True,
+        keeps_element=True,
     ),
     object_rule(
         Pbr,

@@ -80,7 +80,7 @@ def noise_rule() -> ElementRule:
             *_NOISE_RULES,
         ),
         make=_noise_of,
-        keeps=True,
+        keeps_element=True,
         default=NO_NOISE,
         field="noise",
     )

@@ -55,8 +55,8 @@ PHYSICS = ElementRule(
         value("max_contacts", INTEGER, "the maximum number of contact points between two shapes", default="20"),
         value("gravity", VECTOR3, "the gravity, up to SDF 1.5", "m/s2"),
     ),
-    many=True,
+    is_repeated=True,
     make=Physics,
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
 )

@@ -35,10 +35,10 @@ PLUGIN = ElementRule(
         AttributeRule("filename", TEXT, "the library file, with or without lib and .so", required=True, default=""),
         AttributeRule("name", TEXT, "the name; in gz-sim, the name of the class", default=""),
     ),
-    many=True,
+    is_repeated=True,
     make=Plugin,
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
     field="plugins",
 )
 

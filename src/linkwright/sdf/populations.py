@@ -77,7 +77,7 @@ def models_of(population: Population) -> Iterator[Model]:
         coordinate - offset for coordinate, offset in zip(origin.xyz, _offset_from_corner(population), strict=True)
     ]
     rotation = pose_quaternion(origin)
-    for index, position in enumerate(_positions(population)):
+    for index, position in enumerate(_generate_positions(population)):
         x, y, z = (
             corner_coordinate + position_coordinate
             for corner_coordinate, position_coordinate in zip(corner, rotate(rotation, position), strict=True)
@@ -100,7 +100,7 @@ def _offset_from_corner(population: Population) -> Vector3:
     return x / 2, y / 2, z / 2
 
 
-def _positions(population: Population) -> Iterator[Vector3]:
+def _generate_positions(population: Population) -> Iterator[Vector3]:
     distribution, count = population.distribution, min(population.count, _MAX_MODELS)
     generator = Random(population.name)  # noqa: S311 - the same numbers at each start, on purpose
     if distribution.type == "grid":
@@ -109,12 +109,12 @@ def _positions(population: Population) -> Iterator[Vector3]:
             row, column = divmod(index, distribution.columns)
             yield column * x, row * y, 0.0
     elif population.box is not None:
-        yield from _positions_in_box(distribution.type, count, population.box, generator)
+        yield from _generate_positions_in_box(distribution.type, count, population.box, generator)
     elif population.cylinder is not None and distribution.type not in _AXES:
-        yield from _positions_in_cylinder(distribution.type, count, population.cylinder, generator)
+        yield from _generate_positions_in_cylinder(distribution.type, count, population.cylinder, generator)
 
 
-def _positions_in_box(kind: str, count: int, box: Box, generator: Random) -> Iterator[Vector3]:
+def _generate_positions_in_box(kind: str, count: int, box: Box, generator: Random) -> Iterator[Vector3]:
     x, y, z = box.size
     columns = max(1, round(sqrt(count * x / y))) if x > 0 and y > 0 else 1
     rows = -(-count // columns)
@@ -131,7 +131,7 @@ def _positions_in_box(kind: str, count: int, box: Box, generator: Random) -> Ite
             yield position[0], position[1], position[2]
 
 
-def _positions_in_cylinder(kind: str, count: int, cylinder: Cylinder, generator: Random) -> Iterator[Vector3]:
+def _generate_positions_in_cylinder(kind: str, count: int, cylinder: Cylinder, generator: Random) -> Iterator[Vector3]:
     for index in range(count):
         if kind == "random":
             angle, radius = generator.uniform(0, 2 * pi), generator.uniform(0, cylinder.radius)
@@ -172,9 +172,9 @@ POPULATION = ElementRule(
             value("length", NUMBER, "the length along z", "m", default="1"),
         ),
     ),
-    many=True,
+    is_repeated=True,
     make=Population,
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
     field="populations",
 )

@@ -77,7 +77,7 @@ POSE = ElementRule(
         POSE_NUMBERS,
         "the pose",
         default="0 0 0 0 0 0",
-        usual=True,
+        usually_written=True,
         field="numbers",
         get=lambda raw: (*raw.pose.xyz, *(raw.pose.quaternion or raw.pose.rpy)),
     ),

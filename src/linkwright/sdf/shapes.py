@@ -173,9 +173,9 @@ def _shape_if(kind: type) -> Callable[[Shape], Shape | None]:
     return lambda shape: shape if isinstance(shape, kind) else None
 
 
-_RADIUS = value("radius", NUMBER, "the radius", "m", default="1", usual=True)
-_LENGTH = value("length", NUMBER, "the length along z", "m", default="1", usual=True)
-_HALF = value("radius", NUMBER, "the radius", "m", default="0.5", usual=True)
+_RADIUS = value("radius", NUMBER, "the radius", "m", default="1", usually_written=True)
+_LENGTH = value("length", NUMBER, "the length along z", "m", default="1", usually_written=True)
+_HALF = value("radius", NUMBER, "the radius", "m", default="0.5", usually_written=True)
 _URI = value(
     "uri",
     TEXT,
@@ -192,7 +192,7 @@ GEOMETRY = object_rule(
         Box,
         "box",
         "a box centered at the origin",
-        value("size", VECTOR3, "the edge lengths along x, y, z", "m", default="1 1 1", usual=True),
+        value("size", VECTOR3, "the edge lengths along x, y, z", "m", default="1 1 1", usually_written=True),
         get=_shape_if(Box),
     ),
     object_rule(
@@ -206,7 +206,7 @@ GEOMETRY = object_rule(
         Ellipsoid,
         "ellipsoid",
         "an ellipsoid centered at the origin",
-        value("radii", VECTOR3, "the semi-axes along x, y, z", "m", default="1 1 1", usual=True),
+        value("radii", VECTOR3, "the semi-axes along x, y, z", "m", default="1 1 1", usually_written=True),
         get=_shape_if(Ellipsoid),
     ),
     object_rule(Sphere, "sphere", "a sphere centered at the origin", _RADIUS, get=_shape_if(Sphere)),
@@ -214,8 +214,8 @@ GEOMETRY = object_rule(
         Plane,
         "plane",
         "an infinite plane",
-        value("normal", VECTOR3, "the normal of the plane", default="0 0 1", usual=True),
-        value("size", VECTOR2, "the size of the visible part", "m", default="1 1", usual=True),
+        value("normal", VECTOR3, "the normal of the plane", default="0 0 1", usually_written=True),
+        value("size", VECTOR2, "the size of the visible part", "m", default="1 1", usually_written=True),
         get=_shape_if(Plane),
     ),
     object_rule(
@@ -238,7 +238,7 @@ GEOMETRY = object_rule(
         "heightmap",
         "terrain with heights from an image",
         _URI,
-        value("size", VECTOR3, "the extent along x, y and z", "m", default="1 1 1", usual=True),
+        value("size", VECTOR3, "the extent along x, y and z", "m", default="1 1 1", usually_written=True),
         value("pos", VECTOR3, "the offset of the center", "m", default="0 0 0", field="position"),
         object_rule(
             TerrainTexture,
@@ -247,7 +247,7 @@ GEOMETRY = object_rule(
             value("diffuse", TEXT, "the address of the color image", default=""),
             value("normal", TEXT, "the address of the normal image", default=""),
             value("size", NUMBER, "the edge length of the texture", "m", default="10"),
-            many=True,
+            is_repeated=True,
             field="textures",
         ),
         object_rule(
@@ -256,7 +256,7 @@ GEOMETRY = object_rule(
             "the transition from one texture to the next",
             value("min_height", NUMBER, "the height at which the transition begins", "m", default="0"),
             value("fade_dist", NUMBER, "the height over which the transition extends", "m", default="0"),
-            many=True,
+            is_repeated=True,
             field="blends",
         ),
         value("sampling", INTEGER, "the number of heights per pixel", default="2"),
@@ -278,8 +278,8 @@ GEOMETRY = object_rule(
         "polyline",
         "a polygon extruded along z; further polygons cut holes",
         values("point", VECTOR2, "x and y of a corner in meters"),
-        value("height", NUMBER, "the height along z", "m", default="1", usual=True),
-        many=True,
+        value("height", NUMBER, "the height along z", "m", default="1", usually_written=True),
+        is_repeated=True,
         get=lambda shape: shape if isinstance(shape, tuple) else (),
     ),
     object_rule(Empty, "empty", "no shape", get=_shape_if(Empty)),

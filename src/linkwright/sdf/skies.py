@@ -48,7 +48,7 @@ SKY = object_rule(
     value("time", NUMBER, "the time of day", "h", default="10"),
     value("sunrise", NUMBER, "the time of sunrise", "h", default="6"),
     value("sunset", NUMBER, "the time of sunset", "h", default="20"),
-    located=True,
+    passes_element=True,
 )
 FOG = object_rule(
     Fog,

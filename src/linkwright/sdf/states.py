@@ -95,9 +95,9 @@ _LINK_STATE = ElementRule(
     "the state of a link",
     (name_of("the name"),),
     (_STATE_POSE,),
-    many=True,
+    is_repeated=True,
     make=LinkState,
-    keeps=True,
+    keeps_element=True,
     field="links",
 )
 
@@ -106,11 +106,11 @@ _MODEL_STATE = ElementRule(
     "the state of a model",
     (name_of("the name"),),
     (_STATE_POSE, value("scale", VECTOR3, "the scale", default="1 1 1"), _LINK_STATE),
-    many=True,
+    is_repeated=True,
     make=ModelState,
-    keeps=True,
-    located=True,
-    nests=True,
+    keeps_element=True,
+    passes_element=True,
+    is_recursive=True,
     field="models",
 )
 
@@ -127,9 +127,9 @@ STATE = ElementRule(
             "the state of a light",
             (name_of("the name"),),
             (_STATE_POSE,),
-            many=True,
+            is_repeated=True,
             make=LightState,
-            keeps=True,
+            keeps_element=True,
             field="lights",
         ),
         object_rule(
@@ -143,9 +143,9 @@ STATE = ElementRule(
             default=Deletions(),
         ),
     ),
-    many=True,
+    is_repeated=True,
     make=State,
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
     field="states",
 )

@@ -102,7 +102,7 @@ class Surface:
     category_bitmask: int = 0xFFFF
 
 
-USUAL_SURFACE = Surface()
+DEFAULT_SURFACE = Surface()
 
 
 @dataclass(frozen=True, slots=True)
@@ -272,5 +272,5 @@ SURFACE = object_rule(
         value("threshold", NUMBER, "the minimum speed of a bounce", "m/s", default="100000", field="bounce_threshold"),
         get=lambda surface: _unless_default(_Bounce(surface.restitution, surface.bounce_threshold), _Bounce()),
     ),
-    default=USUAL_SURFACE,
+    default=DEFAULT_SURFACE,
 )

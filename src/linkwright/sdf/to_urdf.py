@@ -107,10 +107,10 @@ class _Converter:
             raise _ConversionError(phrase("the model contains another model"), nested_element, hint)
         if not model.links:
             raise _ConversionError(phrase("the model has no link"), model.element)
-        parent_joints = self._parent_joints()
+        parent_joints = self._index_parent_joints()
         root = self._frames.link("")
         self._check_tree(root, parent_joints)
-        joints = [self._joint(joint, parent_joints) for joint in model.joints]
+        joints = [self._convert_joint(joint, parent_joints) for joint in model.joints]
         links = {link.name: self._link(link, parent_joints.get(link.name)) for link in model.links}
         materials = [
             visual.material for link in links.values() for visual in link.visuals if visual.material is not None
@@ -124,12 +124,12 @@ class _Converter:
             element=model.element,
         )
 
-    def _parent_joints(self) -> dict[str, Joint]:
+    def _index_parent_joints(self) -> dict[str, Joint]:
         parent_joints: dict[str, Joint] = {}
         for joint in self._model.joints:
             child = self._frames.link(joint.child)
             if WORLD in (child, self._frames.link(joint.parent)):
-                reason = phrase("{joint} connects the model to the world", joint=_joint_description(joint))
+                reason = phrase("{joint} connects the model to the world", joint=_describe_joint(joint))
                 raise _ConversionError(
                     reason, joint.element, phrase("remove the joint, and spawn the robot with a fixed base")
                 )
@@ -167,7 +167,7 @@ class _Converter:
                     reason, next(link.element for link in self._model.links if link.name == name), hint
                 )
 
-    def _joint(self, joint: Joint, parent_joints: dict[str, Joint]) -> urdf.Joint:
+    def _convert_joint(self, joint: Joint, parent_joints: dict[str, Joint]) -> urdf.Joint:
         parent = self._frames.link(joint.parent)
         origin = compose(invert(self._frame(parent, parent_joints)), self._frames.pose(joint.name))
         kind = _URDF_JOINT_TYPES.get(joint.type, "floating")
@@ -176,7 +176,7 @@ class _Converter:
         if kind == "revolute" and axis is not None and isinf(axis.limit.lower) and isinf(axis.limit.upper):
             kind = "continuous"
         if not has_axis and kind in ("revolute", "continuous", "prismatic"):
-            raise _ConversionError(phrase("{joint} has no <axis>", joint=_joint_description(joint)), joint.element)
+            raise _ConversionError(phrase("{joint} has no <axis>", joint=_describe_joint(joint)), joint.element)
         return urdf.Joint(
             joint.name,
             kind,
@@ -241,7 +241,7 @@ class _Converter:
         return urdf.Collision(_geometry(collision), origin, collision.name, collision.element)
 
 
-def _joint_description(joint: Joint) -> Phrase:
+def _describe_joint(joint: Joint) -> Phrase:
     return describe_element(joint.element) if joint.element is not None else phrase("joint '{name}'", name=joint.name)
 
 

@@ -161,12 +161,20 @@ def value(
     default: str | None = None,
     field: str = "",
     required: bool = False,
-    usual: bool = False,
+    usually_written: bool = False,
     get: Callable[[Any], Any] | None = None,
 ) -> ElementRule:
     """Return the rule of an element that contains a value, such as ``<mass>2.5</mass>``."""
     rule = AttributeRule(
-        "text", kind, meaning, unit, required=required, default=default, usual=usual, field=field or tag, get=get
+        "text",
+        kind,
+        meaning,
+        unit,
+        required=required,
+        default=default,
+        usually_written=usually_written,
+        field=field or tag,
+        get=get,
     )
     default_value = None if default is None else kind.read(default)
     return ElementRule(tag, meaning, text=rule, required=required, default=(default_value,))
@@ -175,7 +183,7 @@ def value(
 def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
     """Return the rule of an element that contains a value and may be repeated."""
     rule = AttributeRule("text", kind, meaning, field="value", get=_same_value)
-    return ElementRule(tag, meaning, text=rule, many=True, make=_same_value, field=field or f"{tag}s")
+    return ElementRule(tag, meaning, text=rule, is_repeated=True, make=_same_value, field=field or f"{tag}s")
 
 
 def _same_value(value: Any) -> Any:
@@ -198,7 +206,7 @@ def object_rule(
 
     Each child element is a keyword argument of `kind`. An invalid child does not affect the others.
     """
-    return ElementRule(tag, meaning, children=children, make=kind, keeps=True, **details)
+    return ElementRule(tag, meaning, children=children, make=kind, keeps_element=True, **details)
 
 
 def without_unreadable(kind: Callable[..., Any]) -> Callable[..., Any]:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.sdf.surfaces import USUAL_SURFACE
+from linkwright.sdf.surfaces import DEFAULT_SURFACE
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.recovery import Recovery
 from linkwright.simulation.scene.surfaces import RESTITUTION_DATA
@@ -79,7 +79,7 @@ class Stepper:
         coefficients = self._coefficients[geoms].prod(axis=1)
         thresholds = self._thresholds[geoms].min(axis=1)
         min_speeds = np.where(
-            thresholds < USUAL_SURFACE.bounce_threshold, np.maximum(thresholds, _MIN_IMPACT_SPEED), _MIN_IMPACT_SPEED
+            thresholds < DEFAULT_SURFACE.bounce_threshold, np.maximum(thresholds, _MIN_IMPACT_SPEED), _MIN_IMPACT_SPEED
         )
         impacts = [
             (index, -coefficients[index] * speeds[rows[index]])

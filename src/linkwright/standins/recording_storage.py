@@ -212,7 +212,7 @@ class MetadataIo:
 
         folder = Path(uri)
         try:
-            metadata = _metadata(yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))[INFORMATION])
+            metadata = _parse_metadata(yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))[INFORMATION])
         except (OSError, ValueError, TypeError, KeyError, yaml.YAMLError) as error:
             raise RuntimeError(f"Exception on parsing info file: {error}") from error
         metadata.bag_size = sum(path.stat().st_size for path in folder.iterdir() if path.is_file())
@@ -222,13 +222,13 @@ class MetadataIo:
         """Write ``metadata.yaml`` into a folder."""
         from linkwright.bag.parts import write_information
 
-        write_information(Path(uri), _metadata_as_yaml(metadata))
+        write_information(Path(uri), _convert_metadata(metadata))
 
     def serialize_metadata(self, metadata: BagMetadata) -> str:
         """Return the contents of a ``metadata.yaml`` without the root key."""
         import yaml
 
-        return yaml.safe_dump(_metadata_as_yaml(metadata), sort_keys=False, allow_unicode=True)
+        return yaml.safe_dump(_convert_metadata(metadata), sort_keys=False, allow_unicode=True)
 
     def deserialize_metadata(self, serialized_metadata: str) -> BagMetadata:
         """Parse the output of `serialize_metadata`.
@@ -239,7 +239,7 @@ class MetadataIo:
         import yaml
 
         try:
-            return _metadata(yaml.safe_load(serialized_metadata))
+            return _parse_metadata(yaml.safe_load(serialized_metadata))
         except (ValueError, TypeError, KeyError, yaml.YAMLError) as error:
             raise RuntimeError(f"bad conversion: {error}") from error
 
@@ -259,7 +259,7 @@ def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
     return qos_input
 
 
-def _metadata(content: Mapping[str, Any]) -> BagMetadata:
+def _parse_metadata(content: Mapping[str, Any]) -> BagMetadata:
     """Return the metadata from a parsed ``metadata.yaml``.
 
     Keys that older versions lack have default values.
@@ -295,7 +295,7 @@ def _time_range(entry: Mapping[str, Any]) -> tuple[Time, Duration]:
     return _time_at(start), Duration(nanoseconds=duration)
 
 
-def _metadata_as_yaml(metadata: BagMetadata) -> dict[str, Any]:
+def _convert_metadata(metadata: BagMetadata) -> dict[str, Any]:
     from linkwright.bag.parts import VERSION
 
     def span(owner: BagMetadata | FileInformation) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from linkwright.standins.rclpy_api.session import spin_once, spin_until_future_c
 
 _LOG_PERIOD = 1.0
 """Seconds between log messages about a missing server."""
-_SPIN_TIMEOUT = 0.1
+_SPIN_TIMEOUT_S = 0.1
 _ACTIVE_STATE = "active"
 
 
@@ -137,7 +137,7 @@ class BasicNavigator(Node):
         """
         if self.result_future is None:
             return True
-        spin_until_future_complete(self, self.result_future, timeout_sec=_SPIN_TIMEOUT)
+        spin_until_future_complete(self, self.result_future, timeout_sec=_SPIN_TIMEOUT_S)
         response = self.result_future.result() if self.result_future.done() else None
         if response is None:
             return False
@@ -274,8 +274,8 @@ class BasicNavigator(Node):
         spin_until_future_complete(self, future)
         return future.result()
 
-    def _call(self, kind: str, name: str, **request: Any) -> Any:
-        service = get_service(kind)
+    def _call(self, service_type: str, name: str, **request: Any) -> Any:
+        service = get_service(service_type)
         client = self.create_client(service, name)
         try:
             while not client.wait_for_service(timeout_sec=_LOG_PERIOD):
@@ -299,7 +299,7 @@ class BasicNavigator(Node):
             state = self._call("lifecycle_msgs/srv/GetState", f"{node_name}/get_state").current_state.label
             self.debug(f"Result of get_state: {state}")
             if state != _ACTIVE_STATE:
-                spin_once(self, timeout_sec=_SPIN_TIMEOUT)
+                spin_once(self, timeout_sec=_SPIN_TIMEOUT_S)
 
     def _waitForInitialPose(self) -> None:
         while not self.initial_pose_received:

@@ -62,10 +62,12 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
     numeric_results = [result for result in table.results if _finite_rows(table, result)]
     if numeric_results:
         sections += [f"<h2>{_escape(phrase('Results'))}</h2>", _statistics_table(table, numeric_results)]
-        cards = "".join(_card(result, histogram(_finite_values(table, result), result)) for result in numeric_results)
+        cards = "".join(
+            _format_card(result, histogram(_finite_values(table, result), result)) for result in numeric_results
+        )
         sections.append(f'<div class="cards">{cards}</div>')
     for parameter in _varied_parameters(table):
-        cards = "".join(_scatter_card(table, parameter, result) for result in numeric_results)
+        cards = "".join(_format_scatter_card(table, parameter, result) for result in numeric_results)
         if cards:
             sections += [
                 f"<h2>{_escape(phrase('Results by {name}', name=parameter))}</h2>",
@@ -106,16 +108,16 @@ def _varied_parameters(table: Table) -> list[str]:
     return parameters or [parameter for parameter in table.parameters[-1:] if len(set(table.columns[parameter])) > 1]
 
 
-def _scatter_card(table: Table, parameter: str, result: str) -> str:
+def _format_scatter_card(table: Table, parameter: str, result: str) -> str:
     indices = _finite_rows(table, result)
     parameter_values = [table.columns[parameter][index] for index in indices]
     rows = [table.columns["row"][index] for index in indices]
-    return _card(
+    return _format_card(
         f"{result} – {parameter}", scatter(parameter_values, _finite_values(table, result), rows, parameter, result)
     )
 
 
-def _card(title: str, drawing: str) -> str:
+def _format_card(title: str, drawing: str) -> str:
     return f'<div class="card"><h3>{escape(title)}</h3>{drawing}</div>'
 
 

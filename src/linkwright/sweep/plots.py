@@ -14,7 +14,7 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 56.0, 12.0, 12.0, 40.0
 _MAX_BARS = 24
 _MAX_POINTS = 2000
 """The maximum number of runs that are drawn. Of more runs, only every n-th is drawn."""
-_POINT_RADIUS = 3.0
+_POINT_RADIUS_PX = 3.0
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,7 @@ class Axis:
         if not from_zero:
             low = floor(low / step) * step
         high = ceil(high / step) * step
-        ticks = [
-            (low + step * number, f"{low + step * number:.6g}") for number in range(round((high - low) / step) + 1)
-        ]
+        ticks = [(low + step * index, f"{low + step * index:.6g}") for index in range(round((high - low) / step) + 1)]
         return cls(
             low,
             high,
@@ -115,7 +113,7 @@ def scatter(
     drawn_indices = range(0, len(values), -(-len(values) // _MAX_POINTS))
     points = "".join(
         f'<a href="#row-{rows[index]}"><circle class="point" cx="{x_axis(positions[index]):.1f}" '
-        f'cy="{y_axis(values[index]):.1f}" r="{_POINT_RADIUS}"><title>{rows[index]}: '
+        f'cy="{y_axis(values[index]):.1f}" r="{_POINT_RADIUS_PX}"><title>{rows[index]}: '
         f"{escape(str(parameter_values[index]))}, {values[index]:.6g}</title></circle></a>"
         for index in drawn_indices
     )

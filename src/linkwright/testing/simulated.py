@@ -41,7 +41,7 @@ _T = TypeVar("_T")
 
 _NODE = "gazebo"
 _CLOCK, _TWIST = "rosgraph_msgs/msg/Clock", "geometry_msgs/msg/Twist"
-_PERIOD = 0.01
+_STEP_PERIOD_S = 0.01
 _ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -64,7 +64,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         noise: float = 1.0,
         robot_state_publisher: bool = False,
         services: bool = True,
-        period: float = _PERIOD,
+        period: float = _STEP_PERIOD_S,
         start: float = 1_700_000_000.0,
         strict: bool = True,
     ) -> None:

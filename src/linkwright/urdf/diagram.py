@@ -19,7 +19,7 @@ from linkwright.files.whole_files import write_whole_file
 IMAGE_SUFFIXES = (".pdf", ".svg", ".png")
 
 
-def render(gv_text: str, path: str | Path) -> None:
+def render(dot_text: str, path: str | Path) -> None:
     """Render Graphviz text with dot to an image file.
 
     The extension of the file selects PDF, SVG or PNG.
@@ -47,7 +47,7 @@ def render(gv_text: str, path: str | Path) -> None:
             Diagnostic("URDF202", phrase("Graphviz is not available: {error}", error=foreign(error)), hint=hint)
         ) from error
     try:
-        graph = AGraph(string=gv_text)
+        graph = AGraph(string=dot_text)
         for node in graph.nodes_iter():
             # The dot command shows the name of a node without a label, but the Graphviz library would show nothing.
             if not node.attr["label"]:

@@ -328,7 +328,7 @@ class UrdfReport(Findings):
 
 
 def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phrase | None:
-    if rule.tag == "limit" and attribute.usual and "inf" in value.casefold():
+    if rule.tag == "limit" and attribute.usually_written and "inf" in value.casefold():
         return phrase("only finite numbers are read; a joint that turns without bounds is 'continuous'")
     return number_hint(value)
 
@@ -384,4 +384,6 @@ def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: Attr
 
 
 def _usual_attributes(rule: ElementRule) -> str:
-    return "".join(f' {attribute.name}="..."' for attribute in rule.attributes if attribute.required or attribute.usual)
+    return "".join(
+        f' {attribute.name}="..."' for attribute in rule.attributes if attribute.required or attribute.usually_written
+    )

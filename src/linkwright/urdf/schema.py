@@ -243,8 +243,8 @@ MATERIAL = ElementRule(
         ),
     ),
     make=Material,
-    located=True,
-    owns=True,
+    passes_element=True,
+    is_owner=True,
 )
 
 INERTIAL = ElementRule(
@@ -266,7 +266,7 @@ INERTIAL = ElementRule(
         ),
     ),
     make=Inertial,
-    located=True,
+    passes_element=True,
 )
 
 _LABEL = AttributeRule("name", TEXT, "a name for people and tools", default="")
@@ -283,9 +283,9 @@ VISUAL = ElementRule(
             get=lambda visual: Material(visual.material_name) if visual.material_name else visual.material,
         ),
     ),
-    many=True,
+    is_repeated=True,
     make=dict,  # the link creates the visual after it has found the named material
-    located=True,
+    passes_element=True,
     field="visuals",
 )
 COLLISION = ElementRule(
@@ -293,9 +293,9 @@ COLLISION = ElementRule(
     "a shape for contacts",
     (_LABEL,),
     (ORIGIN, GEOMETRY),
-    many=True,
+    is_repeated=True,
     make=Collision,
-    located=True,
+    passes_element=True,
     field="collisions",
 )
 
@@ -306,10 +306,10 @@ LINK = ElementRule(
     "a rigid body",
     (_NAME,),
     (INERTIAL, VISUAL, COLLISION),
-    many=True,
+    is_repeated=True,
     make=dict,  # urdfdom drops the parts after an unreadable one
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
     get=lambda robot: robot.links.values(),
 )
 
@@ -322,7 +322,7 @@ AXIS = ElementRule(
             VECTOR3,
             "the direction of the axis, a vector of length 1",
             default="0 0 0",
-            usual=True,
+            usually_written=True,
             field="axis",
             get=lambda joint: None if joint.type in ("fixed", "floating") else joint.axis,
         ),
@@ -337,8 +337,10 @@ LIMIT = ElementRule(
     "limit",
     "the bounds of motion; revolute and prismatic joints need them",
     (
-        _number("lower", "minimum position", "rad or m", default="0", usual=True, later_default=(_URDF_1_2, -inf)),
-        _number("upper", "maximum position", "rad or m", default="0", usual=True, **_NO_BOUND),
+        _number(
+            "lower", "minimum position", "rad or m", default="0", usually_written=True, later_default=(_URDF_1_2, -inf)
+        ),
+        _number("upper", "maximum position", "rad or m", default="0", usually_written=True, **_NO_BOUND),
         _number("effort", "maximum torque or force", "N m or N", required=True, until=_URDF_1_2, **_NO_BOUND),
         _number("velocity", "maximum speed", "rad/s or m/s", required=True, until=_URDF_1_2, **_NO_BOUND),
         _number("acceleration", "maximum acceleration", "rad/s2 or m/s2", since=_URDF_1_2),
@@ -356,8 +358,8 @@ MIMIC = ElementRule(
     "follow another joint: multiplier * its position + offset",
     (
         AttributeRule("joint", TEXT, "the joint to follow", required=True),
-        _number("multiplier", "a factor on the position of that joint", default="1", usual=True),
-        _number("offset", "a value added to the result", "rad or m", default="0", usual=True),
+        _number("multiplier", "a factor on the position of that joint", default="1", usually_written=True),
+        _number("offset", "a value added to the result", "rad or m", default="0", usually_written=True),
     ),
     make=Mimic,
 )
@@ -367,12 +369,20 @@ SAFETY = ElementRule(
     "gains and soft limits of a safety controller",
     (
         _number("k_velocity", "effort per velocity error", "N m s/rad or N s/m", required=True),
-        _number("k_position", "velocity per position error", "1/s", default="0", usual=True),
+        _number("k_position", "velocity per position error", "1/s", default="0", usually_written=True),
         _number(
-            "soft_lower_limit", "the lower position at which it starts to act", "rad or m", default="0", usual=True
+            "soft_lower_limit",
+            "the lower position at which it starts to act",
+            "rad or m",
+            default="0",
+            usually_written=True,
         ),
         _number(
-            "soft_upper_limit", "the upper position at which it starts to act", "rad or m", default="0", usual=True
+            "soft_upper_limit",
+            "the upper position at which it starts to act",
+            "rad or m",
+            default="0",
+            usually_written=True,
         ),
     ),
     make=Safety,
@@ -383,8 +393,8 @@ DYNAMICS = ElementRule(
     "dynamics",
     "damping, friction, or both",
     (
-        _number("damping", "viscous damping", "N m s/rad or N s/m", default="0", usual=True),
-        _number("friction", "static friction", "N m or N", default="0", usual=True),
+        _number("damping", "viscous damping", "N m s/rad or N s/m", default="0", usually_written=True),
+        _number("friction", "static friction", "N m or N", default="0", usually_written=True),
     ),
     make=Dynamics,
     check=check_dynamics,
@@ -423,10 +433,10 @@ JOINT = ElementRule(
     "a connection of two links",
     (_NAME, AttributeRule("type", JOINT_TYPE, JOINT_TYPES_TEXT, required=True, default="fixed")),
     (ORIGIN, PARENT, CHILD, AXIS, LIMIT, MIMIC, SAFETY, DYNAMICS, CALIBRATION),
-    many=True,
+    is_repeated=True,
     make=Joint,
-    keeps=True,
-    located=True,
+    keeps_element=True,
+    passes_element=True,
     get=lambda robot: robot.joints.values(),
 )
 
@@ -437,6 +447,6 @@ ROBOT = ElementRule(
         AttributeRule("name", TEXT, "the robot's name", required=True),
         AttributeRule("version", VERSION, "the URDF version, 1.0 to 1.2", default="1.0"),
     ),
-    (replace(MATERIAL, many=True, get=lambda robot: robot.materials.values()), LINK, JOINT),
+    (replace(MATERIAL, is_repeated=True, get=lambda robot: robot.materials.values()), LINK, JOINT),
     make=Robot,
 )

@@ -21,21 +21,23 @@ if TYPE_CHECKING:
     from linkwright.bag import BagReader
     from linkwright.page.audience import Audience
 
-PATIENCE = 60.0
+IDLE_TIMEOUT_S = 60.0
 """Seconds without a page after which a recording is no longer shown."""
 
-_MAX_GUESTS = 4
-_CHECK_PERIOD = 5.0
-_MIN_IDLE_TIME = 10.0
+_MAX_RECORDINGS = 4
+_CHECK_PERIOD_S = 5.0
+_MIN_IDLE_TIME_S = 10.0
 """Seconds without a page after which a recording may be replaced by another recording."""
 
 
 @dataclass(slots=True)
-class _Guest:
+class _OpenRecording:
+    """A recording that pages show, with the time in seconds at which a page last showed it."""
+
     bag: BagReader
     graph: Graph
     viewer: Viewer
-    scratch: TemporaryDirectory[str] | None
+    temporary_folder: TemporaryDirectory[str] | None
     last_page_time: float
 
 
@@ -48,18 +50,18 @@ class GuestRecordings:
 
     def __init__(self, host: Viewer) -> None:
         self._host = host
-        self._guests: dict[str, _Guest] = {}
+        self._recordings: dict[str, _OpenRecording] = {}
         self._check_timer: asyncio.TimerHandle | None = None
         self._closing_tasks: set[asyncio.Task[None]] = set()
 
-    async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
+    async def open(self, path: Path, temporary_folder: TemporaryDirectory[str] | None) -> str:
         """Show a recording, and return the key with which pages refer to it.
 
         The recording is shown until a minute after its last page was closed.
 
         Args:
             path: the file or folder of the recording.
-            scratch: the temporary folder of the recording, which is removed with it; None for a permanent file.
+            temporary_folder: the folder of the recording, which is removed with it; None for a permanent file.
 
         Raises:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, the limit of recordings is reached.
@@ -69,13 +71,13 @@ class GuestRecordings:
         from linkwright.viewer.recording_config import recording_config
 
         await self._close_longest_idle()
-        if len(self._guests) >= _MAX_GUESTS:
+        if len(self._recordings) >= _MAX_RECORDINGS:
             raise LinkwrightError(
                 Diagnostic(
                     "BAG111",
                     phrase(
                         "{count} recordings are already open: close the page of one of them, and wait a minute",
-                        count=_MAX_GUESTS,
+                        count=_MAX_RECORDINGS,
                     ),
                 )
             )
@@ -102,57 +104,59 @@ class GuestRecordings:
             bag.close()
             raise
         key = secrets.token_urlsafe(16)
-        self._guests[key] = _Guest(bag, graph, viewer, scratch, asyncio.get_running_loop().time())
+        self._recordings[key] = _OpenRecording(bag, graph, viewer, temporary_folder, asyncio.get_running_loop().time())
         self._schedule_check()
         return key
 
     def audience(self, key: str) -> Audience | None:
         """Return the pages that show the recording with a key, or None if there is none."""
-        guest = self._guests.get(key)
-        return None if guest is None else guest.viewer.audience
+        recording = self._recordings.get(key)
+        return None if recording is None else recording.viewer.audience
 
     async def close(self) -> None:
         """Stop showing recordings."""
         if self._check_timer is not None:
             self._check_timer.cancel()
-        guests, self._guests = self._guests, {}
-        await asyncio.gather(*(_close_guest(guest) for guest in guests.values()), *self._closing_tasks)
+        recordings, self._recordings = self._recordings, {}
+        await asyncio.gather(*(_close_recording(recording) for recording in recordings.values()), *self._closing_tasks)
 
     async def _close_longest_idle(self) -> None:
         """If the limit is reached, close the recording that has had no pages for the longest time."""
-        if len(self._guests) < _MAX_GUESTS:
+        if len(self._recordings) < _MAX_RECORDINGS:
             return
-        latest_time = asyncio.get_running_loop().time() - _MIN_IDLE_TIME
+        idle_since_limit = asyncio.get_running_loop().time() - _MIN_IDLE_TIME_S
         last_page_times = {
-            key: guest.last_page_time for key, guest in self._guests.items() if not len(guest.viewer.audience)
+            key: recording.last_page_time
+            for key, recording in self._recordings.items()
+            if not len(recording.viewer.audience)
         }
-        idlest_key = min(last_page_times, key=last_page_times.__getitem__, default=None)
-        if idlest_key is not None and last_page_times[idlest_key] < latest_time:
-            await _close_guest(self._guests.pop(idlest_key))
+        longest_idle_key = min(last_page_times, key=last_page_times.__getitem__, default=None)
+        if longest_idle_key is not None and last_page_times[longest_idle_key] < idle_since_limit:
+            await _close_recording(self._recordings.pop(longest_idle_key))
 
     def _schedule_check(self) -> None:
         if self._check_timer is None:
-            self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._close_idle)
+            self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD_S, self._close_idle)
 
     def _close_idle(self) -> None:
         """Close the recordings whose last page was closed a while ago."""
         self._check_timer = None
         loop = asyncio.get_running_loop()
-        for key, guest in list(self._guests.items()):
-            if len(guest.viewer.audience):
-                guest.last_page_time = loop.time()
-            elif loop.time() - guest.last_page_time > PATIENCE:
-                del self._guests[key]
-                task = loop.create_task(_close_guest(guest))
+        for key, recording in list(self._recordings.items()):
+            if len(recording.viewer.audience):
+                recording.last_page_time = loop.time()
+            elif loop.time() - recording.last_page_time > IDLE_TIMEOUT_S:
+                del self._recordings[key]
+                task = loop.create_task(_close_recording(recording))
                 self._closing_tasks.add(task)
                 task.add_done_callback(self._closing_tasks.discard)
-        if self._guests:
+        if self._recordings:
             self._schedule_check()
 
 
-async def _close_guest(guest: _Guest) -> None:
-    await guest.viewer.close()
-    await guest.graph.close()
-    guest.bag.close()
-    if guest.scratch is not None:
-        guest.scratch.cleanup()
+async def _close_recording(recording: _OpenRecording) -> None:
+    await recording.viewer.close()
+    await recording.graph.close()
+    recording.bag.close()
+    if recording.temporary_folder is not None:
+        recording.temporary_folder.cleanup()

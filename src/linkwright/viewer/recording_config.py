@@ -97,8 +97,8 @@ def _has_world(bag: BagReader) -> bool:
     return {DESCRIPTION_TOPIC, POSES_TOPIC} <= recorded_topics
 
 
-def _add_display(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> None:
-    display = config.new_display(f"rviz_default_plugins/{kind}", topic.name.strip("/"))
+def _add_display(config: RvizConfig, display_class: str, topic: BagTopic, *, checked: bool) -> None:
+    display = config.new_display(f"rviz_default_plugins/{display_class}", topic.name.strip("/"))
     offered_profiles = topic.offered_qos
     display.section.put(("Topic", "Value"), topic.name, string=True)
     if any(offer.reliability is ReliabilityPolicy.BEST_EFFORT for offer in offered_profiles):

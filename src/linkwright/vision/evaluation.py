@@ -120,7 +120,7 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
         predictions: a detector's detections in the same images, with a threshold near 0. Classes are matched by name;
             detections of classes that are not in `names` do not count.
     """
-    class_numbers = {name: number for number, name in enumerate(names)}
+    class_numbers = {name: index for index, name in enumerate(names)}
     detections = [_renumber_classes(class_numbers, detections) for detections in predictions]
     results, confusion, sizes = [], _confusion_matrix(len(names), truth, detections), _recall_by_size(truth, detections)
     for class_number, name in enumerate(names):
@@ -155,7 +155,7 @@ def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predic
     Returns:
         A score between 0.05 and 0.95; 0.5 if no object was found.
     """
-    class_numbers = {name: number for number, name in enumerate(names)}
+    class_numbers = {name: index for index, name in enumerate(names)}
     scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
     is_correct: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
     object_count = 0

@@ -30,10 +30,12 @@ from linkwright.xmltree import Document, Element, Text
 
 _GAP = "\0"
 """Name of the attribute, and content of the text, that mark a gap. XML allows neither."""
-_DEFINITION_TAGS = frozenset({"xacro:arg", "xacro:insert_block", "xacro:macro", "xacro:property"})
+_VALUE_INDEPENDENT_TAGS = frozenset({"xacro:arg", "xacro:insert_block", "xacro:macro", "xacro:property"})
+"""Tags whose effect does not depend on the values of properties or arguments."""
 _FIXED_SUBSTITUTION = lazy_pattern(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
 """Substitutions whose values do not depend on properties or arguments."""
-_DECLARING_TAGS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro:property"})
+_NAME_DEFINING_TAGS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro:property"})
+"""Tags that define names for later tags."""
 _SELF_CONTAINED_CODES = frozenset({"XAC101", "XAC102", "XAC301", "XAC304", "XAC407", "XAC412"})
 """Codes of mistakes in the text of a tag or expression, which do not depend on the values of names."""
 _DEFINITION_CODES = frozenset({"XAC402", "XAC403", "XAC404", "XAC405", "XAC408", "XAC409"})
@@ -67,19 +69,19 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
         expanded_document = expander.walk(document)
     if expanded_document is None:
         raise error
-    trusted_remarks = session.diagnostics[: expander.trusted_remark_count]
+    trusted_warnings = session.diagnostics[: expander.trusted_warning_count]
     session.close()
     return Expansion(
         _without_gaps(expanded_document),
         session.dependencies,
         session.arguments,
-        tuple(trusted_remarks),
+        tuple(trusted_warnings),
         inputs,
         expander.errors,
     )
 
 
-class _LeftOutError(Exception):
+class _OmittedPartError(Exception):
     """Raised when a tag depends on a part that was left out."""
 
 
@@ -88,7 +90,7 @@ class _PartsExpander(Expander):
 
     Attributes:
         is_trusted: whether all names still have the values of the complete expansion.
-        trusted_remark_count: the number of warnings that were recorded while `is_trusted` was true, or None for all.
+        trusted_warning_count: the number of warnings that were recorded while `is_trusted` was true, or None for all.
     """
 
     def __init__(self, session: Session) -> None:
@@ -97,7 +99,7 @@ class _PartsExpander(Expander):
         }
         super().__init__(session, directives, self._skip_on_failure(call_macro))
         self.is_trusted = True
-        self.trusted_remark_count: int | None = None
+        self.trusted_warning_count: int | None = None
         self._failures = 0
         self._reported_definitions: set[tuple[str, str]] = set()
 
@@ -117,11 +119,11 @@ class _PartsExpander(Expander):
         """Return the expanded content of a macro call.
 
         Raises:
-            _LeftOutError: if the content has a gap.
+            _OmittedPartError: if the content has a gap.
         """
         container = super().expand_blocks(node, scope, macros)
         if _GAP in container.attributes:
-            raise _LeftOutError
+            raise _OmittedPartError
         return container
 
     def record_fault(self, fault: Fault) -> None:
@@ -154,7 +156,7 @@ class _PartsExpander(Expander):
                     reported_diagnostics = [
                         diagnostic for diagnostic in error.diagnostics if self._is_reported(diagnostic, site.node)
                     ]
-                except _LeftOutError:
+                except _OmittedPartError:
                     pass
                 else:
                     return
@@ -179,12 +181,12 @@ class _PartsExpander(Expander):
     def _stop_trusting(self) -> None:
         if self.is_trusted:
             self.is_trusted = False
-            self.trusted_remark_count = len(self.session.diagnostics)
+            self.trusted_warning_count = len(self.session.diagnostics)
 
     def _may_define_names(self, node: Element) -> bool:
         """Return whether a tag that was left out might have defined names for later tags."""
         tags = {element.tag for element in node.walk()}
-        if tags & _DECLARING_TAGS:
+        if tags & _NAME_DEFINING_TAGS:
             return True
         has_macro_calls = any(tag.startswith(PREFIX) and tag not in DIRECTIVES for tag in tags)
         return (has_macro_calls or "xacro:call" in tags) and self._macros_define_outside()
@@ -206,7 +208,7 @@ def _depends_on_values(node: Element) -> bool:
 
     Definitions do not depend on values until they are used.
     """
-    if node.tag not in DIRECTIVES or node.tag in _DEFINITION_TAGS:
+    if node.tag not in DIRECTIVES or node.tag in _VALUE_INDEPENDENT_TAGS:
         return False
     return any("$" in _FIXED_SUBSTITUTION.sub("", value) for value in node.attributes.values())
 

@@ -74,7 +74,7 @@ def decode_with_encoding(data: bytes, name: str) -> Decoded:
         return _decode(data, encoding, name, phrase("its XML declaration specifies this encoding"))
 
 
-def as_decoded(text: str, name: str) -> Decoded:
+def wrap_text(text: str, name: str) -> Decoded:
     """Return a text that was not read from a file as a `Decoded` in UTF-8.
 
     Raises:

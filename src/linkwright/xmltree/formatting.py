@@ -88,7 +88,7 @@ def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B
     newline = "\r\n" if text.count("\r\n") * 2 > text.count("\n") else "\n"
     body = text[len(byte_order_mark) :]
     layout = _Layout(body, style, newline)
-    formatted = byte_order_mark + layout.document(_nodes(body))
+    formatted = byte_order_mark + layout.document(_read_nodes(body))
     if not _are_equal(_top_nodes(original), _top_nodes(parse(formatted, name))):
         message = phrase("'{file}' cannot be formatted without changing its meaning", file=name)
         raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("report this as a bug, and attach the file")))
@@ -121,7 +121,7 @@ def apply_edits(original: str, edits: Sequence[TextEdit]) -> str:
     return "".join(lines)
 
 
-def _nodes(text: str) -> list[_Node]:
+def _read_nodes(text: str) -> list[_Node]:
     """Return the top-level nodes of a well-formed text."""
     top_nodes: list[_Node] = []
     parents: list[_Node] = []
@@ -154,9 +154,9 @@ class _Layout:
 
     def document(self, nodes: Sequence[_Node]) -> str:
         """Return the formatted text of a document."""
-        return self._lines(nodes, 0).strip("\r\n") + self._newline
+        return self._format_lines(nodes, 0).strip("\r\n") + self._newline
 
-    def _lines(self, nodes: Sequence[_Node], depth: int) -> str:
+    def _format_lines(self, nodes: Sequence[_Node], depth: int) -> str:
         """Return the formatted text of nodes, each on separate lines with its line ending.
 
         A comment stays on the line of another node if it is on that line in the original.
@@ -169,11 +169,11 @@ class _Layout:
                 blanks = node.token.text
                 continue
             if previous is not None and "\n" not in blanks and self._is_beside(previous, node):
-                parts[-1:] = [" ", self._node(node, depth), self._newline]
+                parts[-1:] = [" ", self._format_node(node, depth), self._newline]
             else:
                 if blanks.count("\n") > 1:
                     parts.append(self._newline)
-                parts += [self._margin(depth), self._node(node, depth), self._newline]
+                parts += [self._margin(depth), self._format_node(node, depth), self._newline]
             previous, blanks = node, ""
         if blanks.count("\n") > 1:
             parts.append(self._newline)
@@ -187,27 +187,27 @@ class _Layout:
             node.token.kind,
         )
 
-    def _node(self, node: _Node, depth: int) -> str:
+    def _format_node(self, node: _Node, depth: int) -> str:
         if node.token.kind is not Kind.START:
             return node.token.text
-        start = self._start_tag(node.token, depth)
+        start = self._format_start_tag(node.token, depth)
         if node.closing is None:
             return start
         end = f"</{node.closing.name}>"
         if node.is_verbatim:
             return start + self._text[node.token.end : node.closing.start] + end
         if "\n" not in self._text[node.token.start : node.end]:
-            line = self._line(node)
+            line = self._format_on_one_line(node)
             if len(self._margin(depth)) + len(line) <= self._style.width:
                 return line
-        inner = self._lines(node.children, depth + 1)
+        inner = self._format_lines(node.children, depth + 1)
         return start + self._newline + inner + self._margin(depth) + end
 
-    def _line(self, node: _Node) -> str:
+    def _format_on_one_line(self, node: _Node) -> str:
         """Return a node with its content on one line."""
         if node.token.kind is not Kind.START:
             return node.token.text
-        start = self._one_line(node.token)
+        start = self._format_tag_on_one_line(node.token)
         if node.closing is None:
             return start
         if node.is_verbatim:
@@ -229,17 +229,17 @@ class _Layout:
                 continue
             if has_blanks and previous is not None and self._is_beside(previous, node):
                 yield " "
-            yield self._line(node)
+            yield self._format_on_one_line(node)
             previous, has_blanks = node, False
 
-    def _start_tag(self, tag: Token, depth: int) -> str:
+    def _format_start_tag(self, tag: Token, depth: int) -> str:
         """Return a formatted start tag.
 
         Attributes stay on their lines. If a line becomes too long, its attributes continue on the next line.
         """
         attributes = tag.attributes()
         margin = self._margin(depth)
-        line = self._one_line(tag)
+        line = self._format_tag_on_one_line(tag)
         is_broken = bool(attributes) and "\n" in tag.text[: attributes[-1].end - tag.start]
         if not attributes or (not is_broken and len(margin) + len(line) <= self._style.width):
             return line
@@ -253,7 +253,7 @@ class _Layout:
             if index:
                 lines.append(step.removesuffix(" "))
             for attribute in row:
-                attribute_text = _attribute_text(attribute)
+                attribute_text = _format_attribute(attribute)
                 has_content = lines[-1].strip() not in ("", opening)
                 first_line = attribute_text.split("\n")[0].rstrip("\r")
                 if has_content and len(lines[-1].rsplit("\n", 1)[-1]) + 1 + len(first_line) > self._style.width:
@@ -269,8 +269,8 @@ class _Layout:
     def _column(self, attribute: TokenAttribute) -> int:
         return attribute.start - self._text.rfind("\n", 0, attribute.start)
 
-    def _one_line(self, tag: Token) -> str:
-        attribute_text = "".join(f" {_attribute_text(attribute)}" for attribute in tag.attributes())
+    def _format_tag_on_one_line(self, tag: Token) -> str:
+        attribute_text = "".join(f" {_format_attribute(attribute)}" for attribute in tag.attributes())
         return f"<{tag.name}{attribute_text}{self._ending(tag)}"
 
     def _ending(self, tag: Token) -> str:
@@ -295,7 +295,7 @@ class _Layout:
         return " " * (self._style.indent * depth)
 
 
-def _attribute_text(attribute: TokenAttribute) -> str:
+def _format_attribute(attribute: TokenAttribute) -> str:
     return f"{attribute.name}={attribute.quote}{attribute.value}{attribute.quote}"
 
 

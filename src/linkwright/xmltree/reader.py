@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.input_files import MAX_TEXT_BYTES, NoWriterError, read_file
 from linkwright.loading.lean_typing import TYPE_CHECKING, NoReturn
-from linkwright.xmltree.decoding import Decoded, as_decoded, decode_with_encoding
+from linkwright.xmltree.decoding import Decoded, decode_with_encoding, wrap_text
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def parse(
         LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a Git LFS pointer) or XML2xx (not well-formed XML),
             with the location.
     """
-    text, encoding = decode_with_encoding(text, name) if isinstance(text, bytes) else as_decoded(text, name)
+    text, encoding = decode_with_encoding(text, name) if isinstance(text, bytes) else wrap_text(text, name)
     document = _Reader(SourceText(name, text), blanks=blanks, read_as=read_as, any_prefix=any_prefix).read()
     document.encoding = encoding
     return document
@@ -179,8 +179,8 @@ class _Reader:
         parser.buffer_text = True
         parser.specified_attributes = True  # ignore attribute defaults of a DTD, which are not written in the document
         parser.buffer_size = max(1024, min(len(self._data), 1 << 20))
-        parser.CommentHandler = self._comment
-        parser.ProcessingInstructionHandler = self._instruction
+        parser.CommentHandler = self._add_comment
+        parser.ProcessingInstructionHandler = self._add_instruction
         parser.StartCdataSectionHandler = self._start_cdata
         parser.EndCdataSectionHandler = self._end_cdata
         parser.StartDoctypeDeclHandler = self._start_doctype
@@ -250,8 +250,8 @@ class _Reader:
         root_index, root = next((index, node) for index, node in enumerate(top_nodes) if isinstance(node, Element))
         document = Document(root, self._source)
         document.prolog, document.epilog = (
-            _comments_and_instructions(top_nodes[:root_index]),
-            _comments_and_instructions(top_nodes[root_index + 1 :]),
+            _select_comments_and_instructions(top_nodes[:root_index]),
+            _select_comments_and_instructions(top_nodes[root_index + 1 :]),
         )
         document.doctype, document.doctype_index = self._doctype, self._doctype_at
         if not self._is_ascii:
@@ -335,10 +335,10 @@ class _Reader:
 
     # comments and processing instructions
 
-    def _comment(self, data: str) -> None:
+    def _add_comment(self, data: str) -> None:
         self._append(Comment(data, self._source, self._parser.CurrentByteIndex))
 
-    def _instruction(self, target: str, data: str) -> None:
+    def _add_instruction(self, target: str, data: str) -> None:
         self._append(ProcessingInstruction(target, data, self._source, self._parser.CurrentByteIndex))
 
     def _append(self, node: Comment | ProcessingInstruction) -> None:
@@ -403,7 +403,7 @@ def _declared_prefixes(element: Element) -> list[str]:
     return [name[6:] for name in element.attributes if name.startswith("xmlns:")]
 
 
-def _comments_and_instructions(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
+def _select_comments_and_instructions(nodes: list[Node]) -> list[Comment | ProcessingInstruction]:
     return [node for node in nodes if isinstance(node, (Comment, ProcessingInstruction))]
 
 
@@ -464,7 +464,7 @@ class Overlay:
             LinkwrightError: XML101 to XML104 or XML106, the file cannot be read or is not text.
         """
         text = self.text(path)
-        return decode_with_encoding(read_bytes(path), path) if text is None else as_decoded(text, path)
+        return decode_with_encoding(read_bytes(path), path) if text is None else wrap_text(text, path)
 
 
 def _key(path: str | os.PathLike[str]) -> str:

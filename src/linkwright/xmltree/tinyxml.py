@@ -72,7 +72,7 @@ def _replace_control_characters(text: str, offset: int) -> str:
 def _replace_less_than(text: str, offset: int) -> str:
     if text[offset : offset + 1] != "<":
         return text
-    for value in _values(text):
+    for value in _iterate_values(text):
         value_text = text[value.start : value.end]
         text = text[: value.start] + value_text.replace("<", _SUBSTITUTES["<"]) + text[value.end :]
     return text
@@ -129,7 +129,7 @@ class _Value(NamedTuple):
     end: int
 
 
-def _values(text: str) -> Iterator[_Value]:
+def _iterate_values(text: str) -> Iterator[_Value]:
     return (value for value, _ in _values_and_blanks(text))
 
 

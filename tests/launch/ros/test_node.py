@@ -179,7 +179,7 @@ class TestProcessNodes:
         self, launch, write: Write, monkeypatch: pytest.MonkeyPatch, package: str, executable: str, name: str
     ) -> None:
         planned: list[HostedPlan] = []
-        monkeypatch.setattr(NodeHost, "plan", lambda _, plan: planned.append(plan))
+        monkeypatch.setattr(NodeHost, "schedule_node", lambda _, plan: planned.append(plan))
         right = write("right.yaml", f"{name}: {{ros__parameters: {{a: 1}}}}\nother: {{ros__parameters: {{a: 2}}}}\n")
         wrong = write("wrong.yaml", f"{name}x: {{ros__parameters: {{b: 1}}}}\n")
         files = [str(right), str(wrong)]

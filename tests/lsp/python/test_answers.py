@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from linkwright.lsp.python.answers import combine_responses, is_enough, server_of_action
+from linkwright.lsp.python.answers import combine_responses, is_final_response, server_of_action
 from linkwright.lsp.python.open_texts import OpenText
 
 TEXT = OpenText("file:///a.py", 'Node(pac, "tur")\n', 1, "utf-16")
@@ -29,8 +29,8 @@ def test_first_non_empty_answer_applies(empty: Any) -> None:
     assert combine_responses("textDocument/hover", [(OWN, empty), (TY, answer)], TEXT, {}) == answer
     assert combine_responses("textDocument/hover", [(OWN, answer), (TY, {"contents": "b"})], TEXT, {}) == answer
     assert combine_responses("textDocument/hover", [(OWN, empty), (TY, None)], TEXT, {}) == empty
-    assert not is_enough("textDocument/hover", empty)
-    assert is_enough("textDocument/hover", answer)
+    assert not is_final_response("textDocument/hover", empty)
+    assert is_final_response("textDocument/hover", answer)
 
 
 def test_completions_of_all_servers_are_combined_without_duplicates() -> None:

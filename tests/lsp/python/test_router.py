@@ -165,7 +165,7 @@ def test_linkwright_answer_is_returned_immediately(connect: Callable[..., Connec
 
 
 def test_unresponsive_server_is_skipped(connect: Callable[..., Connection], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(router_module, "_PATIENCE_SECONDS", 0.1)
+    monkeypatch.setattr(router_module, "_RESPONSE_TIMEOUT_S", 0.1)
     connection = connect(program("ty"))
     connection.open()
     connection.hover(5, hang=True)

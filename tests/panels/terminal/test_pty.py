@@ -79,7 +79,7 @@ async def running(script: str, folder: Path, **options: bool) -> AsyncIterator[R
         yield program
     finally:
         program.pty.hang_up()
-        await asyncio.to_thread(program.pty.wait_ended, 0.1)
+        await asyncio.to_thread(program.pty.wait_until_ended, 0.1)
 
 
 async def test_program_runs_in_folder_with_own_terminal(tmp_path: Path) -> None:
@@ -166,7 +166,7 @@ async def test_hang_up_ends_processes_that_ignore_sighup(tmp_path: Path) -> None
         leader = program.leader
         wait_until(lambda: len(list(session_processes(leader))) >= 3, SECONDS)
         program.pty.hang_up()
-        await asyncio.to_thread(program.pty.wait_ended, 0.1)
+        await asyncio.to_thread(program.pty.wait_until_ended, 0.1)
         assert list(session_processes(leader)) == []
         assert program.status is None
 
@@ -176,7 +176,7 @@ async def test_hang_up_ends_stopped_program(tmp_path: Path) -> None:
         await program.prints("ready")
         leader = program.leader
         program.pty.hang_up()
-        await asyncio.to_thread(program.pty.wait_ended, SECONDS)
+        await asyncio.to_thread(program.pty.wait_until_ended, SECONDS)
         assert list(session_processes(leader)) == []
 
 

@@ -150,7 +150,7 @@ def detection_message(seconds: int, *results):
 
 
 async def test_image_is_shown_with_matching_detections(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", 1e9)
+    monkeypatch.setattr("linkwright.rviz.displays.detection_image._DETECTION_TIMEOUT_S", 1e9)
     async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
         node = world.graph.create_node("camera")
         camera = node.create_publisher("sensor_msgs/msg/Image", "/topic", 10)
@@ -181,7 +181,7 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
 
 
 async def test_images_are_shown_without_waiting_if_detector_is_silent(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.displays.detection_image._PATIENCE", -1.0)
+    monkeypatch.setattr("linkwright.rviz.displays.detection_image._DETECTION_TIMEOUT_S", -1.0)
     async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
         publish(world, "/found", detection_message(1, result("ball", 0.5)))
         publish(world, "/topic", image(5))

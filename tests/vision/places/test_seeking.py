@@ -7,7 +7,7 @@ from math import atan2, cos, hypot, inf, pi, sin
 import pytest
 
 from linkwright.vision.places.object_requests import Answer
-from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
+from linkwright.vision.places.seeking import Observation, Phase, Seeker, SeekSettings
 
 PERIOD = 0.1
 
@@ -18,12 +18,14 @@ class Robot:
     def __init__(self, seeker, target=None, radius=0.15):
         self.seeker, self.target, self.radius = seeker, target, radius
         self.x = self.y = self.heading = self.time = 0.0
-        self.seen_at, self.detection_silence, self.free_distance = -inf, 0.0, inf
+        self.seen_at, self.time_since_detections, self.free_distance = -inf, 0.0, inf
         self.way = 0.0
         self.hidden = False
 
     def step(self):
-        view = View(self.time, self.heading, detection_silence=self.detection_silence, free_distance=self.free_distance)
+        view = Observation(
+            self.time, self.heading, time_since_detections=self.time_since_detections, free_distance=self.free_distance
+        )
         if self.target is not None:
             away = hypot(self.target[0] - self.x, self.target[1] - self.y)
             bearing = atan2(self.target[1] - self.y, self.target[0] - self.x) - self.heading
@@ -32,13 +34,13 @@ class Robot:
                 self.seen_at = self.time
             if self.seen_at > -inf:
                 seen_ago = self.time - self.seen_at
-                view = View(
+                view = Observation(
                     self.time,
                     self.heading,
                     bearing,
                     away - self.radius,
                     seen_ago,
-                    self.detection_silence,
+                    self.time_since_detections,
                     self.free_distance,
                 )
         move = self.seeker.step(view)
@@ -83,7 +85,7 @@ def test_lost_object_stops_robot_and_is_searched():
     robot.hidden = True
     way = robot.way
     assert robot.advance(5) == []
-    assert robot.way - way < seeker.settings.speed * (seeker.settings.lost_time + 0.2)
+    assert robot.way - way < seeker.settings.speed * (seeker.settings.lost_timeout + 0.2)
     assert robot.advance(30) == [Answer.LOST]
 
 
@@ -103,7 +105,7 @@ def test_silent_detector_stops_robot():
     robot = Robot(seeker, (3.0, 0.0))
     seeker.begin()
     robot.advance(2)
-    robot.detection_silence = 3.5
+    robot.time_since_detections = 3.5
     assert robot.advance(1) == [Answer.NO_DETECTIONS]
     way = robot.way
     robot.advance(2)

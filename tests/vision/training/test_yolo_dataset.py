@@ -14,11 +14,11 @@ from linkwright.vision.training.images import (
     repeat_factors,
     repeated_indices,
 )
-from linkwright.vision.training.options import Options, View
+from linkwright.vision.training.options import CropSettings, Options
 from linkwright.vision.training.yolo_dataset import open_dataset
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
-VIEW = View((64, 64), (0.42, 1.1))
+VIEW = CropSettings((64, 64), (0.42, 1.1))
 
 
 @pytest.fixture
@@ -178,7 +178,7 @@ def test_last_epochs_use_whole_images(shapes):
     assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
     assert options.view(4).scales[0] > options.view(0).scales[0]
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    same = View((96, 96), (1.0, 1.0))
+    same = CropSettings((96, 96), (1.0, 1.0))
     (_, objects) = augment(labeled_images, 0, same, np.random.default_rng(5))
     here = labeled_images.objects[0]
     sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])

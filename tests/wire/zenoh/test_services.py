@@ -9,7 +9,7 @@ from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import get_service, type_hash
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.services import IncomingService
-from linkwright.wire.zenoh.session import configuration, open_with
+from linkwright.wire.zenoh.session import build_config, open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from tests.wire.test_services import flip
@@ -118,7 +118,7 @@ def test_request_without_attachment_is_rejected(processes):
     process = processes("ours")
     requests = []
     process.node.create_service(SetBool, "flip", lambda request, response: requests.append(request) or response)
-    with open_with(configuration(read_settings())) as session:
+    with open_session(build_config(read_settings())) as session:
         key = f"{read_settings().domain_id}/flip/std_srvs::srv::dds_::SetBool_/{type_hash(SetBool)}"
         querier = session.declare_querier(key)
         process.spin_until(lambda: querier.matching_status.matching)

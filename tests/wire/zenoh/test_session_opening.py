@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 import zenoh
 
-from linkwright.wire.zenoh.reaching import obstacle, obstacles
+from linkwright.wire.zenoh.reaching import connection_problem, connection_problems
 from linkwright.wire.zenoh.settings import OVERRIDES
 from tests.wire.zenoh.conftest import ROUTER
 
@@ -95,18 +95,20 @@ def test_router_reports_unreachable_endpoint(router_port, silent_port):
 
 
 def test_malformed_and_unknown_addresses_are_reported():
-    assert "is not an address: write it as tcp/HOST:PORT" in obstacle("tcp/localhost", {})
-    assert "its port must be at most 65535" in obstacle("tcp/127.0.0.1:70000", {})
-    assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in obstacle("tcp/robot.invalid:7447", {})
-    assert not obstacle("udp/127.0.0.1:9", {}), "only Zenoh checks UDP addresses"
+    assert "is not an address: write it as tcp/HOST:PORT" in connection_problem("tcp/localhost", {})
+    assert "its port must be at most 65535" in connection_problem("tcp/127.0.0.1:70000", {})
+    assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in connection_problem(
+        "tcp/robot.invalid:7447", {}
+    )
+    assert not connection_problem("udp/127.0.0.1:9", {}), "only Zenoh checks UDP addresses"
 
 
 def test_duplicate_session_id_is_reported(silent_port):
     config = zenoh.Config()
     for key, value in (("id", '"abc1"'), ("connect/endpoints", f'["tcp/127.0.0.1:{silent_port}"]')):
         config.insert_json5(key, value)
-    (obstacle,) = obstacles(config)
-    assert "the same 'id'" in obstacle
+    (connection_problem,) = connection_problems(config)
+    assert "the same 'id'" in connection_problem
 
 
 class Certificates:
@@ -168,7 +170,7 @@ def obstacle_at(certificates) -> Callable[..., str]:
     port = certificates.serve()
 
     def ask(host: str = "localhost", **names: str) -> str:
-        return obstacle(f"tls/{host}:{port}", certificates.settings(**names))
+        return connection_problem(f"tls/{host}:{port}", certificates.settings(**names))
 
     return ask
 
@@ -187,7 +189,9 @@ def test_invalid_certificates_are_reported(obstacle_at):
 
 
 def test_tls_and_tcp_mismatch_is_reported(certificates, silent_port):
-    assert "does not speak TLS: write tcp/" in obstacle(f"tls/localhost:{silent_port}", certificates.settings())
+    assert "does not speak TLS: write tcp/" in connection_problem(
+        f"tls/localhost:{silent_port}", certificates.settings()
+    )
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def refuse() -> None:
@@ -196,4 +200,4 @@ def test_tls_and_tcp_mismatch_is_reported(certificates, silent_port):
                 called.recv(16)
 
         threading.Thread(target=refuse, daemon=True).start()
-        assert "speaks TLS: write tls/" in obstacle(f"tcp/127.0.0.1:{server.getsockname()[1]}", {})
+        assert "speaks TLS: write tls/" in connection_problem(f"tcp/127.0.0.1:{server.getsockname()[1]}", {})

@@ -8,14 +8,14 @@ import time
 import pytest
 
 from linkwright.diagnostics import LinkwrightError, render
-from linkwright.wire.zenoh.session import close_session, configuration, open_with
+from linkwright.wire.zenoh.session import build_config, close_session, open_session
 from linkwright.wire.zenoh.settings import OVERRIDES, read_router_settings, read_settings
 
 DROPPING = "transport/link/tx/queue/congestion_control/drop"
 
 
 def dropping(settings):
-    return json.loads(configuration(settings).get_json(DROPPING))
+    return json.loads(build_config(settings).get_json(DROPPING))
 
 
 def test_sessions_wait_longer_before_drop_than_routers():
@@ -42,7 +42,7 @@ def test_failed_session_opening_is_reported_with_advice(router_port, override, m
         listener.listen()
         text = override.format(port=listener.getsockname()[1], free=router_port)
         with pytest.raises(LinkwrightError) as refused:
-            open_with(configuration(read_settings({OVERRIDES: text})))
+            open_session(build_config(read_settings({OVERRIDES: text})))
     (finding,) = refused.value.diagnostics
     assert finding.code == "DDS112"
     assert message in render(finding)
@@ -63,7 +63,7 @@ class BlockedSession:
 
 
 def test_process_exit_does_not_wait_for_blocked_session(monkeypatch):
-    monkeypatch.setattr("linkwright.wire.zenoh.session._CLOSING_LIMIT", 0.01)
+    monkeypatch.setattr("linkwright.wire.zenoh.session._CLOSE_TIMEOUT_S", 0.01)
     session = BlockedSession()
     start = time.monotonic()
     close_session(session)

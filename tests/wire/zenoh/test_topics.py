@@ -18,7 +18,7 @@ from linkwright.graph.qos.profile import (
 from linkwright.graph.time.values import Duration
 from linkwright.messages import String, serialize, type_hash
 from linkwright.wire.zenoh import transport
-from linkwright.wire.zenoh.session import configuration, open_with
+from linkwright.wire.zenoh.session import build_config, open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from linkwright.wire.zenoh.topics import OutgoingTopic
@@ -58,7 +58,7 @@ def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
         result.set()
         time.sleep(0.3)  # the callback then needs the lock
 
-    with open_with(configuration(read_settings())) as ours, open_with(configuration(read_settings())) as theirs:
+    with open_session(build_config(read_settings())) as ours, open_session(build_config(read_settings())) as theirs:
 
         def announce(name: str, number: str, qos: QoSProfile) -> OutgoingTopic:
             publisher = node.create_publisher(String, name, qos)
@@ -121,7 +121,7 @@ def test_humble_has_no_type_hashes(processes, monkeypatch):
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.publish(String(data="hej"))
     b.spin_until(lambda: texts)
-    with open_with(configuration(read_settings())) as session:
+    with open_session(build_config(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported"
         probe = session.declare_publisher(key)
         b.spin_until(lambda: probe.matching_status.matching)
@@ -131,7 +131,7 @@ def test_sample_without_attachment_is_dropped_and_reported_once(processes):
     process = processes("ours")
     texts: list[str] = []
     process.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
-    with open_with(configuration(read_settings())) as session:
+    with open_session(build_config(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/{type_hash(String)}"
         stranger = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
         process.spin_until(lambda: stranger.matching_status.matching)
@@ -147,7 +147,7 @@ def test_raw_subscription_accepts_unknown_type(processes):
     process = processes("ours")
     payloads: list[bytes] = []
     process.node.create_subscription("strange_msgs/msg/Odd", "odd", payloads.append, 10, raw=True)
-    with open_with(configuration(read_settings())) as session:
+    with open_session(build_config(read_settings())) as session:
         from linkwright.wire.zenoh import attachment
 
         stranger = session.declare_publisher(f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00")

@@ -29,7 +29,7 @@ export class LinksPanel implements Panel {
 
   constructor(private readonly session: Session) {
     const texts = strings.description;
-    this.tree.preserveIn(session.memory);
+    this.tree.preserveIn(session.pageMemory);
     this.search.type = "search";
     this.search.placeholder = texts.search;
     this.search.setAttribute("aria-label", texts.search);

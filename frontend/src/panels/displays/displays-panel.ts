@@ -31,7 +31,7 @@ export class DisplaysPanel implements Panel {
 
   constructor(private readonly session: Session) {
     this.tree = new TreeView(strings.panels.displays, () => this.listItems(), () => session.frames.names);
-    this.tree.preserveIn(session.memory, this.id);
+    this.tree.preserveIn(session.pageMemory, this.id);
     this.commands = new DisplayCommands(session, () => this.selectedDisplay, () => this.selectedAll);
     this.emptyNote.hidden = this.help.hidden = true;
     this.element = h("div", { class: "panel displays-panel" }, this.createToolbar(), this.filterBar(), this.emptyNote, this.tree.element, this.help);

@@ -44,7 +44,7 @@ export class EditingPanel implements Panel {
   private poseControls: readonly HTMLElement[] = [];
 
   constructor(private readonly session: Session) {
-    const { editing, focus, angles } = session;
+    const { editing, focus, angleUnits } = session;
     const numbers = h("div", { class: "editing-numbers" }, this.place, this.fields, this.createTools());
     this.workArea.append(numbers, new EditOutcome(editing).element);
     this.element = h("div", { class: "panel editing-panel" }, h("div", { class: "editing-body" }, this.hint, this.list, this.workArea));
@@ -57,7 +57,7 @@ export class EditingPanel implements Panel {
     holdWhileVisible(this.element, () => editing.hold(), update);
     focus.changed.on(follow);
     for (const signal of [editing.changed, editing.draftChanged, editing.snapping.changed]) signal.on(update);
-    angles.changed.on(() => {
+    angleUnits.changed.on(() => {
       this.shownPart = null;
       this.update(); // Update immediately: the next number typed is in the new unit.
     });
@@ -99,7 +99,7 @@ export class EditingPanel implements Panel {
     this.shownPart = part;
     this.place.replaceChildren();
     if (part) this.showPlace(part);
-    const key = part ? [part.part, part.name, part.index, this.session.angles.current].join(" ") : "";
+    const key = part ? [part.part, part.name, part.index, this.session.angleUnits.current].join(" ") : "";
     if (key === this.builtKey) return;
     this.builtKey = key;
     this.inputs = [];
@@ -119,7 +119,7 @@ export class EditingPanel implements Panel {
   private createRows(part: EditablePart): HTMLElement[] {
     const texts = strings.editing;
     if (part.part === "axis") return [this.createRow(texts.axis, "xyz", ["x", "y", "z"], "")];
-    const isInDegrees = this.session.angles.current === "deg";
+    const isInDegrees = this.session.angleUnits.current === "deg";
     return [
       this.createRow(texts.position, "xyz", ["x", "y", "z"], "m"),
       this.createRow(texts.rotation, "rpy", texts.angles, isInDegrees ? strings.joints.degrees : strings.joints.radians),
@@ -152,7 +152,7 @@ export class EditingPanel implements Panel {
       show();
     };
     const step = (direction: number): void => {
-      const angle = this.session.angles.current === "deg" ? DEGREE_STEP : TURN_STEP;
+      const angle = this.session.angleUnits.current === "deg" ? DEGREE_STEP : TURN_STEP;
       this.set(kind, index, this.getValue(kind, index) + direction * (kind === "rpy" ? angle : MOVE_STEP));
       show();
     };
@@ -185,12 +185,12 @@ export class EditingPanel implements Panel {
   }
 
   private scaleOf(kind: "xyz" | "rpy"): number {
-    return kind === "rpy" ? this.session.angles.scale("revolute") : 1;
+    return kind === "rpy" ? this.session.angleUnits.scale("revolute") : 1;
   }
 
   private createTools(): HTMLElement {
     const texts = strings.editing;
-    const { editing, angles } = this.session;
+    const { editing, angleUnits } = this.session;
     const frameSelect = createSelect<HandleFrame>(texts.frameHint, [["parent", texts.parentFrame], ["own", texts.ownFrame]], (value) => (editing.frame = value));
     const formatSteps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
     const { snapping } = editing;
@@ -207,7 +207,7 @@ export class EditingPanel implements Panel {
     snapping.changed.on(show);
     show();
     this.poseControls = [this.modes, frameSelect, lengthSelect];
-    return h("div", { class: "editing-tools" }, this.modes, frameSelect, snapButton, lengthSelect, angleSelect, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
+    return h("div", { class: "editing-tools" }, this.modes, frameSelect, snapButton, lengthSelect, angleSelect, h("span", { class: "spacer" }), new UnitSwitch(angleUnits).element);
   }
 
   private showModes(): void {

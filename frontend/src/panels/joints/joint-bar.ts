@@ -5,7 +5,7 @@ import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
 
 /** Returns the controls of all joints: Randomize and Center as in joint_state_publisher_gui, and the unit of angles. */
-export function createJointBar({ connection, angles }: Session): HTMLElement {
+export function createJointBar({ connection, angleUnits }: Session): HTMLElement {
   const texts = strings.joints;
   return h(
     "div",
@@ -13,6 +13,6 @@ export function createJointBar({ connection, angles }: Session): HTMLElement {
     button(texts.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), texts.randomize),
     button(texts.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), texts.center),
     h("span", { class: "spacer" }),
-    new UnitSwitch(angles).element,
+    new UnitSwitch(angleUnits).element,
   );
 }

@@ -26,15 +26,15 @@ export class JointTablePanel implements Panel {
   constructor(private readonly session: Session) {
     const table = h("table", { class: "joint-table" }, h("thead", {}, this.head), this.body);
     this.box = h("div", { class: "table-box" }, table);
-    const units = new UnitSwitch(session.angles);
+    const units = new UnitSwitch(session.angleUnits);
     const bar = h("div", { class: "toolbar" }, this.count, h("span", { class: "spacer" }), units.element);
     this.element = h("div", { class: "panel" }, bar, this.empty, this.box);
-    const { description, focus, angles } = session;
+    const { description, focus, angleUnits } = session;
     const update = coalesce(() => this.update());
     holdWhileVisible(this.element, () => description.hold(), update);
     description.arrived.on(update);
     session.robotChanged.on(update);
-    angles.changed.on(update);
+    angleUnits.changed.on(update);
     focus.changed.on(coalesce(() => this.markCurrent(true)));
     this.update();
   }
@@ -64,7 +64,7 @@ export class JointTablePanel implements Panel {
   }
 
   private createRow(joint: JointDetails): HTMLElement {
-    const texts = formatJointCells(joint, this.session.angles, strings.description);
+    const texts = formatJointCells(joint, this.session.angleUnits, strings.description);
     const row = h(
       "tr",
       { tabIndex: 0, data: { joint: joint.name } },

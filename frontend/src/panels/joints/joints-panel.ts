@@ -22,7 +22,7 @@ export class JointsPanel implements Panel {
 
   constructor(private readonly session: Session) {
     const texts = strings.joints;
-    const { joints, angles } = session;
+    const { joints, angleUnits } = session;
     this.filter.placeholder = texts.filter;
     this.filter.setAttribute("aria-label", texts.filter);
     this.filter.addEventListener("input", () => this.applyFilter());
@@ -31,14 +31,14 @@ export class JointsPanel implements Panel {
     this.element = h("div", { class: "panel joints-panel" }, bar, this.bars, this.filter, this.list);
     joints.controlsChanged.on(() => this.build());
     joints.positionsChanged.on(() => this.update());
-    angles.changed.on(() => this.rows.forEach((row) => row.showUnit()));
+    angleUnits.changed.on(() => this.rows.forEach((row) => row.showUnit()));
     this.build();
   }
 
   private build(): void {
-    const { joints, angles } = this.session;
+    const { joints, angleUnits } = this.session;
     this.rows = (joints.controls ?? []).map(
-      (joint) => new JointRow(joint, angles, (position) => joints.move({ [joint.name]: position })),
+      (joint) => new JointRow(joint, angleUnits, (position) => joints.move({ [joint.name]: position })),
     );
     this.list.replaceChildren(...this.rows.map((row) => row.element));
     const isEmpty = this.rows.length === 0;

@@ -96,8 +96,8 @@ export class PlotBox {
   private showValues(): void {
     this.plot.series.forEach((series, index) => {
       const output = this.values.get(series);
-      const { atCursor } = this.chart;
-      const value = atCursor ? (atCursor[index] ?? null) : series.buffer.lastValue;
+      const { valuesAtCursor } = this.chart;
+      const value = valuesAtCursor ? (valuesAtCursor[index] ?? null) : series.buffer.lastValue;
       const text = series.error ?? formatValue(value);
       if (output && output.textContent !== text) output.textContent = text;
     });

@@ -4,7 +4,7 @@ import { formatValue } from "../../state/monitor/field-text";
 import { tabulatePlot } from "../../state/monitor/plot-table";
 import type { Plot, PlotsState } from "../../state/monitor/plots";
 
-const COLORS = 8;
+const COLOR_COUNT = 8;
 const AXIS_FONT = "10.5px system-ui, sans-serif";
 const Y_AXIS_PX = 58;
 /** s; greater times are calendar times, smaller ones are counted from the start of a simulation. */
@@ -12,18 +12,18 @@ const MIN_CALENDAR_TIME = 1e8;
 
 /** Returns the color of a plot's series, as a CSS variable. */
 export function seriesColorOf(index: number): string {
-  return `var(--plot-${(index % COLORS) + 1})`;
+  return `var(--plot-${(index % COLOR_COUNT) + 1})`;
 }
 
 /** One plot, drawn by uPlot, which is fetched when the first plot becomes visible. */
 export class PlotChart {
   readonly element = h("div", { class: "plot-canvas" });
   /** The values at the pointer, by series; null while the pointer is elsewhere. */
-  atCursor: readonly (number | null)[] | null = null;
+  valuesAtCursor: readonly (number | null)[] | null = null;
   private library: typeof uPlot | null = null;
   private isFetching = false;
   private chart: uPlot | null = null;
-  private count = -1;
+  private seriesCount = -1;
 
   constructor(
     private readonly state: PlotsState,
@@ -42,7 +42,7 @@ export class PlotChart {
       this.fetchLibrary();
       return;
     }
-    if (this.count !== plot.series.length) this.rebuild(this.library, width, height);
+    if (this.seriesCount !== plot.series.length) this.rebuild(this.library, width, height);
     const { chart } = this;
     if (!chart) return;
     const [start, end] = state.window ?? [0, state.seconds];
@@ -59,7 +59,7 @@ export class PlotChart {
   dispose(): void {
     this.chart?.destroy();
     this.chart = null;
-    this.count = -1;
+    this.seriesCount = -1;
   }
 
   private resize(): void {
@@ -84,7 +84,7 @@ export class PlotChart {
 
   private rebuild(Chart: typeof uPlot, width: number, height: number): void {
     this.dispose();
-    this.count = this.plot.series.length;
+    this.seriesCount = this.plot.series.length;
     const color = (name: string) => () => getComputedStyle(this.element).getPropertyValue(name).trim();
     const axis: uPlot.Axis = {
       stroke: color("--text-faint"),
@@ -103,7 +103,7 @@ export class PlotChart {
         series: [
           {},
           ...this.plot.series.map((_, index) => ({
-            stroke: color(`--plot-${(index % COLORS) + 1}`),
+            stroke: color(`--plot-${(index % COLOR_COUNT) + 1}`),
             width: 1.4,
             points: { show: false },
             // A gap is an absent value of this series, not a column that only another series has.
@@ -127,10 +127,10 @@ export class PlotChart {
   private readCursor(chart: uPlot): void {
     const { left } = chart.cursor;
     if (left === undefined || left < 0) {
-      this.atCursor = null;
+      this.valuesAtCursor = null;
     } else {
       const time = chart.posToVal(left, "x");
-      this.atCursor = this.plot.series.map(({ buffer }) => {
+      this.valuesAtCursor = this.plot.series.map(({ buffer }) => {
         const index = buffer.indexFrom(this.state.source, time);
         return buffer.values[Math.max(0, index - 1)] ?? null;
       });

@@ -8,7 +8,7 @@ import { strings } from "../../strings";
 
 const ROBOT_MODEL = "rviz_default_plugins/RobotModel";
 /** How long (ms) the notice waits for the frame: localization takes a moment to publish it. */
-const PATIENCE_MS = 3000;
+const NOTICE_DELAY_MS = 3000;
 
 /**
  * The notice over the scene while the Fixed Frame does not exist: its name, and a button that uses an existing frame
@@ -50,7 +50,7 @@ export class FrameNotice {
     this.element.hidden = true;
     if (currentMissingFrame === null) return;
     this.session.configuration.requestChoices();
-    this.timer = setTimeout(() => this.show(), PATIENCE_MS);
+    this.timer = setTimeout(() => this.show(), NOTICE_DELAY_MS);
   }
 
   private show(): void {

@@ -9,7 +9,7 @@ import { getCurrentModel } from "../description/current-model";
 
 const CHOICES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
 /** The ends of the slider are powers of two: a quarter of the size, and four times the size. */
-const SCALE_STEPS = 2;
+const MAX_SCALE_EXPONENT = 2;
 
 /** The menu over the scene that shows invisible properties, and the findings on them. */
 export class InspectMenu {
@@ -79,8 +79,8 @@ export class InspectMenu {
   private createScaleRow(): HTMLElement {
     const { inspect } = this.session;
     this.scale.type = "range";
-    this.scale.min = String(-SCALE_STEPS);
-    this.scale.max = String(SCALE_STEPS);
+    this.scale.min = String(-MAX_SCALE_EXPONENT);
+    this.scale.max = String(MAX_SCALE_EXPONENT);
     this.scale.step = "0.25";
     this.scale.addEventListener("input", () => (inspect.scale = 2 ** Number(this.scale.value)));
     return h("label", {}, strings.description.inspect.scale, this.scale);

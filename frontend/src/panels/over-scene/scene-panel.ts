@@ -52,7 +52,7 @@ export class ScenePanel implements Panel {
       new SlowNotice(session),
       new OwnerNotice(session),
       new MeshNotice(session.meshProgress),
-      new VoiceNotice(session.voice, session.words),
+      new VoiceNotice(session.voice, session.enrolledWords),
     ];
     this.column.element.append(inspect.element, card.element, ...notices.map((notice) => notice.element));
     this.box = h(

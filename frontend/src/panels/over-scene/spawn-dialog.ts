@@ -11,10 +11,10 @@ import { Dialog } from "../../widgets/dialog";
  */
 export class SpawnDialog {
   private readonly dialog: Dialog;
-  private readonly address = h("input", { class: "field", aria: { label: strings.simulation.address } });
+  private readonly location = h("input", { class: "field", aria: { label: strings.simulation.address } });
   private readonly positionFields: readonly HTMLInputElement[];
   private readonly list = h("div", { class: "choices", role: "listbox", aria: { label: strings.simulation.models } });
-  private readonly problem = h("p", { class: "problem", role: "alert" });
+  private readonly message = h("p", { class: "problem", role: "alert" });
   private models: readonly ModelChoice[] | null = null;
 
   constructor(
@@ -24,25 +24,25 @@ export class SpawnDialog {
     onClosed: () => void,
   ) {
     const texts = strings.simulation;
-    this.address.placeholder = texts.addressHint;
-    this.address.addEventListener("input", () => this.onAddressChanged());
+    this.location.placeholder = texts.addressHint;
+    this.location.addEventListener("input", () => this.onLocationChanged());
     this.positionFields = position.map((value, axis) => {
       const field = h("input", { class: "field number", aria: { label: "xyz"[axis] ?? "" } });
       field.value = String(Math.round(value * 1000) / 1000);
       return field;
     });
     const rows = [
-      h("label", { class: "spawn-row" }, h("span", {}, texts.address), this.address),
+      h("label", { class: "spawn-row" }, h("span", {}, texts.address), this.location),
       this.list,
       h("div", { class: "spawn-row" }, h("span", {}, texts.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
-      this.problem,
+      this.message,
     ];
-    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.run() }];
+    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.submit() }];
     this.dialog = new Dialog(texts.spawnTitle, rows, choices, "spawn-dialog");
     const unsubscribers = [
       modeling.modelsArrived.on((models) => {
         this.models = models;
-        this.fill();
+        this.renderModels();
       }),
       simulation.added.on(() => this.dialog.close()),
       simulation.refused.on((text) => this.showProblem(text)),
@@ -51,22 +51,22 @@ export class SpawnDialog {
       for (const unsubscribe of unsubscribers) unsubscribe();
       onClosed();
     });
-    this.dialog.open(this.address);
-    this.onAddressChanged();
+    this.dialog.open(this.location);
+    this.onLocationChanged();
     modeling.requestModels();
   }
 
-  /** Removes the message about the previous address. */
-  private onAddressChanged(): void {
-    this.fill();
-    this.dialog.isReady = this.address.value.trim() !== "";
-    this.problem.textContent = "";
+  /** Removes the message about the previous location. */
+  private onLocationChanged(): void {
+    this.renderModels();
+    this.dialog.isReady = this.location.value.trim() !== "";
+    this.message.textContent = "";
   }
 
   /** Lists the models whose names contain the typed text; all models once one of them is chosen. */
-  private fill(): void {
+  private renderModels(): void {
     const texts = strings.simulation;
-    const query = this.address.value.trim();
+    const query = this.location.value.trim();
     const models = this.models ?? [];
     const isModelChosen = models.some(({ address }) => address === query);
     const listedModels = isModelChosen ? models : models.filter(({ name }) => name.toLowerCase().includes(query.toLowerCase()));
@@ -80,8 +80,8 @@ export class SpawnDialog {
   private createRow(model: ModelChoice, isChosen: boolean): HTMLElement {
     const { name, address } = model;
     const choose = (): void => {
-      this.address.value = address;
-      this.onAddressChanged();
+      this.location.value = address;
+      this.onLocationChanged();
       this.list.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
     };
     const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
@@ -96,21 +96,21 @@ export class SpawnDialog {
     return row;
   }
 
-  private run(): boolean {
-    const address = this.address.value.trim();
+  private submit(): boolean {
+    const location = this.location.value.trim();
     const numbers = this.positionFields.map((field) => Number(field.value));
-    if (address === "" || numbers.some((number) => !Number.isFinite(number))) return false;
-    const model = this.models?.find(({ name }) => name === address);
-    this.simulation.spawn(model?.address ?? address, numbers);
+    if (location === "" || numbers.some((number) => !Number.isFinite(number))) return false;
+    const model = this.models?.find(({ name }) => name === location);
+    this.simulation.spawn(model?.address ?? location, numbers);
     this.dialog.isReady = false;
-    this.problem.classList.remove("problem");
-    this.problem.textContent = strings.simulation.adding;
+    this.message.classList.remove("problem");
+    this.message.textContent = strings.simulation.adding;
     return false;
   }
 
   private showProblem(text: string): void {
-    this.problem.classList.add("problem");
-    this.problem.textContent = text;
+    this.message.classList.add("problem");
+    this.message.textContent = text;
     this.dialog.isReady = true;
   }
 }

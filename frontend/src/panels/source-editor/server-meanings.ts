@@ -1,7 +1,7 @@
 import type { Text } from "@codemirror/state";
 import { offsetOf } from "./server-places";
 
-const TOKEN_FIELDS = 5;
+const FIELDS_PER_TOKEN = 5;
 
 /** A color whose parts are between 0 and 1. */
 export interface Color {
@@ -26,8 +26,8 @@ interface TokenRange {
 export function decodeTokens(doc: Text, data: readonly number[], { tokenTypes, tokenModifiers }: Legend): TokenRange[] {
   const ranges: TokenRange[] = [];
   let [line, character] = [0, 0];
-  for (let index = 0; index + TOKEN_FIELDS <= data.length; index += TOKEN_FIELDS) {
-    const [lines = 0, characters = 0, length = 0, type = 0, modifiers = 0] = data.slice(index, index + TOKEN_FIELDS);
+  for (let index = 0; index + FIELDS_PER_TOKEN <= data.length; index += FIELDS_PER_TOKEN) {
+    const [lines = 0, characters = 0, length = 0, type = 0, modifiers = 0] = data.slice(index, index + FIELDS_PER_TOKEN);
     character = lines === 0 ? character + characters : characters;
     line += lines;
     const names = [tokenTypes[type] ?? "", ...tokenModifiers.filter((_, bit) => (modifiers >> bit) & 1)];

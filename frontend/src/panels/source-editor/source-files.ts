@@ -7,7 +7,7 @@ import { nameOf } from "../place";
 import { isWithinMessageSize } from "./message-size";
 import { SourceDocument } from "./source-document";
 
-const RESTARTS = 3;
+const MAX_RESTARTS = 3;
 const RESTART_MS = 1000;
 
 /** What the files need of the editor. */
@@ -129,7 +129,7 @@ export class SourceFiles {
       this.isOpen = false;
       this.restarts += 1;
       this.host.tell(strings.sourceEditor.ended);
-      if (this.restarts <= RESTARTS) setTimeout(() => this.reopen(), RESTART_MS);
+      if (this.restarts <= MAX_RESTARTS) setTimeout(() => this.reopen(), RESTART_MS);
     });
     window.addEventListener("beforeunload", (event) => this.unsavedDocuments.length > 0 && event.preventDefault());
   }

@@ -4,7 +4,7 @@ import { createAxes } from "../objects/geometries";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
-const SEGMENTS = 24;
+const SEGMENT_COUNT = 24;
 
 /** rviz_default_plugins/Axes */
 export class AxesDrawing implements Drawing {
@@ -21,7 +21,7 @@ export class AxesDrawing implements Drawing {
   onPropertiesChanged(): void {
     const { rows } = this.context.display;
     this.mesh.geometry.dispose();
-    this.mesh.geometry = createAxes(rows.number(1, "Length"), rows.number(0.1, "Radius"), SEGMENTS);
+    this.mesh.geometry = createAxes(rows.number(1, "Length"), rows.number(0.1, "Radius"), SEGMENT_COUNT);
     this.frame = rows.text(FIXED_FRAME, "Reference Frame");
   }
 

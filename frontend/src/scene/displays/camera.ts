@@ -49,7 +49,7 @@ export class CameraDrawing implements Drawing {
     });
   }
 
-  onDataForgotten(): void {
+  onDataRemoved(): void {
     this.data = this.model = null;
     this.image.clear();
     this.canvas.width = this.canvas.height = 0;

@@ -1,7 +1,7 @@
 import type { PointFields } from "../../protocol";
 import type { DescriptionRow } from "../picking";
 
-const DIGITS = 6;
+const DIGIT_COUNT = 6;
 
 /**
  * Returns the rows of RViz's Selection panel for a point: its position in the message's frame, then its other fields,
@@ -13,7 +13,7 @@ export function describePoint(
   position: Float32Array,
   fields: PointFields["fields"] | null,
 ): DescriptionRow {
-  const coordinates = [...position].map((coordinate) => String(Number(coordinate.toPrecision(DIGITS))));
+  const coordinates = [...position].map((coordinate) => String(Number(coordinate.toPrecision(DIGIT_COUNT))));
   const children: DescriptionRow[] = [
     {
       name: "Position",
@@ -24,11 +24,11 @@ export function describePoint(
   Object.entries(fields ?? {}).forEach(([name, value], number) => {
     const row = `${number + coordinates.length}: ${name}`;
     if (typeof value === "number") {
-      children.push({ name: row, value: String(Number(value.toPrecision(DIGITS))) });
+      children.push({ name: row, value: String(Number(value.toPrecision(DIGIT_COUNT))) });
     } else if (value.startsWith("#")) {
       const channels = [1, 3, 5, 7].map((start) => parseInt(value.slice(start, start + 2), 16));
       children.push({ name: row, value: channels.slice(0, 3).join("; ") });
-      children.push({ name: "alpha", value: String(Number(((channels[3] ?? 0) / 255).toPrecision(DIGITS))) });
+      children.push({ name: "alpha", value: String(Number(((channels[3] ?? 0) / 255).toPrecision(DIGIT_COUNT))) });
     } else {
       children.push({ name: row, value });
     }

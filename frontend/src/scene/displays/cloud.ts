@@ -68,7 +68,7 @@ export class CloudDrawing implements Drawing {
     if (this.selectedKeys.size > 0) this.markSelection();
   }
 
-  onDataForgotten(key: string | null): void {
+  onDataRemoved(key: string | null): void {
     for (const [cloudKey, { batch }] of this.clouds) {
       if (key !== null && cloudKey !== key) continue;
       batch.dispose();
@@ -162,7 +162,7 @@ export class CloudDrawing implements Drawing {
   }
 
   dispose(): void {
-    this.onDataForgotten(null);
+    this.onDataRemoved(null);
     this.fields.dispose();
     this.marks.dispose();
   }

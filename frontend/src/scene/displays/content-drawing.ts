@@ -37,7 +37,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
     this.isStale = true;
   }
 
-  onDataForgotten(key: string | null): void {
+  onDataRemoved(key: string | null): void {
     if (key === null) this.contents.clear();
     else this.contents.delete(key);
     this.isStale = true;

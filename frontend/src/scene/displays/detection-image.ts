@@ -39,11 +39,11 @@ export class DetectionImageDrawing extends ImageDrawing {
     } else super.onDataChanged(data);
   }
 
-  override onDataForgotten(key: string | null): void {
+  override onDataRemoved(key: string | null): void {
     this.boxesByStamp.clear();
     this.unmatchedBoxes = null;
     if (key === "boxes") this.draw();
-    else super.onDataForgotten(key);
+    else super.onDataRemoved(key);
   }
 
   override inspect(): object {

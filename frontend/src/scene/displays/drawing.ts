@@ -53,7 +53,7 @@ export interface Drawing {
   /** Called with new content; a drawing created later receives earlier content, too. */
   onDataChanged?(data: DisplayData): void;
   /** Called when the content under a key, or all content (null), must no longer be drawn. */
-  onDataForgotten?(key: string | null): void;
+  onDataRemoved?(key: string | null): void;
   /** Called after every frame while the display is enabled, for displays that show the scene elsewhere. */
   afterFrame?(scene: DrawnScene): void;
   /** Returns false while requested data is still loading. */

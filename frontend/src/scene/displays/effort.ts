@@ -8,8 +8,8 @@ import { poseAt } from "./styles";
 /** The radius of a ring without effort, m, which is also added to the used share of the limit. */
 const MIN_RADIUS = 0.05;
 /** The points of a ring, which spans this many of 32 parts; the gap holds its arrow head. */
-const POINTS = 30;
-const PARTS = 32;
+const POINT_COUNT = 30;
+const PART_COUNT = 32;
 
 /** rviz_default_plugins/Effort: rings around the joints, larger and redder the closer the effort is to its limit. */
 export class EffortDrawing extends ContentDrawing<"effort_rings"> {
@@ -53,7 +53,7 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
         const [r, g, b] = rainbowColorOf(share);
         poseAt(content.poses, i, pose);
         strips.push(createRing(pose, radius, Math.sign(effort)));
-        colors.push(new Float32Array(Array.from({ length: POINTS }, () => [r, g, b, 1]).flat()));
+        colors.push(new Float32Array(Array.from({ length: POINT_COUNT }, () => [r, g, b, 1]).flat()));
         poseAlongX(new Vector3(0, radius, 0), new Vector3(effort > 0 ? -1 : 1, 0, 0), arrow);
         const color = (Math.round(r * 255) << 16) | (Math.round(g * 255) << 8) | Math.round(b * 255);
         this.heads.add(arrow.premultiply(pose), headShape, { color, alpha });
@@ -71,10 +71,10 @@ function computeUsedShare(effort: number, limit: number): number {
 }
 
 function createRing(pose: Matrix4, radius: number, direction: number): Float32Array {
-  const strip = new Float32Array(POINTS * 3);
+  const strip = new Float32Array(POINT_COUNT * 3);
   const point = new Vector3();
-  for (let i = 0; i < POINTS; i++) {
-    const angle = (i * 2 * Math.PI) / PARTS;
+  for (let i = 0; i < POINT_COUNT; i++) {
+    const angle = (i * 2 * Math.PI) / PART_COUNT;
     const x = radius * Math.sin(angle);
     point.set(direction < 0 ? -x : x, radius * Math.cos(angle), 0).applyMatrix4(pose).toArray(strip, i * 3);
   }

@@ -33,7 +33,7 @@ export class GridCellsDrawing implements Drawing {
     this.batch.setPoints(content.positions, new Uint8Array(0), false);
   }
 
-  onDataForgotten(): void {
+  onDataRemoved(): void {
     this.data = null;
     this.batch.setPoints(new Float32Array(0), new Uint8Array(0), false);
   }

@@ -48,7 +48,7 @@ export class ImageDrawing implements Drawing {
     });
   }
 
-  onDataForgotten(key: string | null): void {
+  onDataRemoved(key: string | null): void {
     if (key) return; // the image has none
     this.frame = null;
     this.image.clear();

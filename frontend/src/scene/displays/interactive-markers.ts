@@ -38,7 +38,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     }
   }
 
-  onDataForgotten(key: string | null): void {
+  onDataRemoved(key: string | null): void {
     if (key === null) for (const name of [...this.markers.keys()]) this.remove(name);
     else if (key.startsWith(MARKER_KEY)) this.remove(key.slice(MARKER_KEY.length));
   }
@@ -134,7 +134,7 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   dispose(): void {
-    this.onDataForgotten(null);
+    this.onDataRemoved(null);
   }
 
   private onPointerDown(event: ScenePointer, hit: Hit, marker: MarkerHandle, control: ControlHandle): boolean {

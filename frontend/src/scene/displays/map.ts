@@ -49,7 +49,7 @@ export class MapDrawing implements Drawing {
     this.origin.compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw).normalize(), new Vector3(1, 1, 1));
   }
 
-  onDataForgotten(): void {
+  onDataRemoved(): void {
     this.data = this.map = null;
     this.plane.clear();
   }

@@ -40,13 +40,13 @@ export class MarkersDrawing implements Drawing {
 
   onDataChanged({ content }: DisplayData): void {
     if (content.kind !== "markers_changed") return;
-    if (content.everything) this.onDataForgotten();
+    if (content.everything) this.onDataRemoved();
     for (const id of content.removed_ids) this.remove(id);
     for (const marker of content.markers) this.show(marker);
     this.areSolidsStale = true;
   }
 
-  onDataForgotten(): void {
+  onDataRemoved(): void {
     for (const id of [...this.entries.keys()]) this.remove(id);
     this.areSolidsStale = true;
   }
@@ -131,7 +131,7 @@ export class MarkersDrawing implements Drawing {
   }
 
   dispose(): void {
-    this.onDataForgotten();
+    this.onDataRemoved();
     this.solids?.dispose();
   }
 

@@ -11,13 +11,13 @@ import { colorOf, poseAt } from "./styles";
 const SHAFT_DIAMETER = 0.0435;
 const HEAD_LENGTH = 0.3043;
 const HEAD_DIAMETER = 0.1304;
-const SEGMENTS = 8;
+const SEGMENT_COUNT = 8;
 
 /** nav2_rviz_plugins/ParticleCloud: poses, drawn larger and higher the likelier they are. */
 export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
   private readonly lines = new ThinLines();
-  private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
-  private readonly axes = new AxesBatch(this.root, 1, SHAFT_DIAMETER, SEGMENTS);
+  private readonly arrows = new ArrowBatch(this.root, SEGMENT_COUNT);
+  private readonly axes = new AxesBatch(this.root, 1, SHAFT_DIAMETER, SEGMENT_COUNT);
 
   constructor(context: DrawingContext) {
     super(context, "particle_marks");

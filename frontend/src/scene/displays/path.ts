@@ -7,13 +7,13 @@ import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf, poseAt } from "./styles";
 
-const SEGMENTS = 10;
+const SEGMENT_COUNT = 10;
 
 /** rviz_default_plugins/Path: lines through the poses of each path, and optionally the poses themselves. */
 export class PathDrawing extends ContentDrawing<"pose_marks"> {
   private readonly thinLines = new ThinLines();
   private readonly wideLines = new WideLines();
-  private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
+  private readonly arrows = new ArrowBatch(this.root, SEGMENT_COUNT);
   private readonly axes = new AxesBatch(this.root);
   private pointCount = 0;
 
@@ -70,7 +70,7 @@ export class PathDrawing extends ContentDrawing<"pose_marks"> {
       headLength: rows.number(0.2, "Head Length"),
       headDiameter: rows.number(0.3, "Head Diameter"),
     };
-    this.axes.setShape(rows.number(0.3, "Length"), rows.number(0.03, "Radius"), SEGMENTS);
+    this.axes.setShape(rows.number(0.3, "Length"), rows.number(0.03, "Radius"), SEGMENT_COUNT);
     this.arrows.begin(style === "Arrows" ? poses.length : 0);
     this.axes.begin(style === "Axes" ? poses.length : 0);
     for (const pose of poses) {

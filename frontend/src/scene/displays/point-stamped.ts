@@ -5,11 +5,11 @@ import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf } from "./styles";
 
-const SEGMENTS = 16;
+const SEGMENT_COUNT = 16;
 
 /** rviz_default_plugins/PointStamped: spheres at the points; like RViz, this uses the property Radius as a diameter. */
 export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
-  private readonly balls = new CopyBatch(this.root, createSphere(SEGMENTS));
+  private readonly balls = new CopyBatch(this.root, createSphere(SEGMENT_COUNT));
 
   constructor(context: DrawingContext) {
     super(context, "point_marks");

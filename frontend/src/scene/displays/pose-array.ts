@@ -8,12 +8,12 @@ import { createFlatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
 /** A low number of segments, because thousands of poses are particles. */
-const SEGMENTS = 8;
+const SEGMENT_COUNT = 8;
 
 /** rviz_default_plugins/PoseArray */
 export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
   private readonly lines = new ThinLines();
-  private readonly arrows = new ArrowBatch(this.root, SEGMENTS);
+  private readonly arrows = new ArrowBatch(this.root, SEGMENT_COUNT);
   private readonly axes = new AxesBatch(this.root);
 
   constructor(context: DrawingContext) {
@@ -49,7 +49,7 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
       headDiameter: rows.number(0.03, "Head Radius"),
     };
     const matrix = new Matrix4();
-    this.axes.setShape(rows.number(0.3, "Axes Length"), rows.number(0.01, "Axes Radius"), SEGMENTS);
+    this.axes.setShape(rows.number(0.3, "Axes Length"), rows.number(0.01, "Axes Radius"), SEGMENT_COUNT);
     this.arrows.begin(shape === "Arrow (3D)" ? count : 0);
     this.axes.begin(shape === "Axes" ? count : 0);
     for (let i = 0; i < count; i++) {

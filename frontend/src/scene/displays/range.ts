@@ -5,11 +5,11 @@ import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 import { colorOf } from "./styles";
 
-const SEGMENTS = 32;
+const SEGMENT_COUNT = 32;
 
 /** rviz_default_plugins/Range: cones with their apex at the sensor. */
 export class RangeDrawing extends ContentDrawing<"range_cone"> {
-  private readonly cones = new CopyBatch(this.root, createCone(SEGMENTS));
+  private readonly cones = new CopyBatch(this.root, createCone(SEGMENT_COUNT));
 
   constructor(context: DrawingContext) {
     super(context, "range_cone");

@@ -17,17 +17,17 @@ const NAME_HEIGHT = 0.1;
 /** A frame closer to its parent than this gets no arrow, m. */
 const MIN_ARROW = 0.001;
 /** The number of steps in which fading is drawn, so that frames are requested only at steps. */
-const FADE_STEPS = 32;
+const FADE_STEP_COUNT = 32;
 
-/** From this number of frames on, axes and arrows have fewer segments. */
-const MANY_FRAMES = 120;
-const FINE_SEGMENTS = 12;
-const COARSE_SEGMENTS = 5;
+/** With more frames than this, axes and arrows have fewer segments. */
+const MAX_FINE_FRAMES = 120;
+const FINE_SEGMENT_COUNT = 12;
+const COARSE_SEGMENT_COUNT = 5;
 
 /** rviz_default_plugins/TF: axes, arrows to parents and names of all frames, each kind in one draw call. */
 export class TfDrawing implements Drawing {
   readonly root = new Group();
-  private readonly markers = new FrameMarkers(this.root, FINE_SEGMENTS);
+  private readonly markers = new FrameMarkers(this.root, FINE_SEGMENT_COUNT);
   private readonly names = new LabelBatch();
   private readonly unsubscribe: (() => void)[];
   /** The frames that pass the server's filters and whose boxes are ticked. */
@@ -59,7 +59,7 @@ export class TfDrawing implements Drawing {
     const { frames } = this.context.session;
     const showsAxes = rows.bool(true, "Show Axes");
     const showsNames = rows.bool(false, "Show Names");
-    this.markers.refine(fades.length > MANY_FRAMES ? COARSE_SEGMENTS : FINE_SEGMENTS);
+    this.markers.refine(fades.length > MAX_FINE_FRAMES ? COARSE_SEGMENT_COUNT : FINE_SEGMENT_COUNT);
     const { axes } = this.markers;
     axes.begin(fades.length);
     this.nameCount = 0;
@@ -182,7 +182,7 @@ export class TfDrawing implements Drawing {
     ages.forEach((age, row) => {
       if (age <= timeout / 3) return;
       const { gray, alpha } = fadeForAge(age, timeout);
-      steps.push(row, Math.round((gray - alpha) * FADE_STEPS));
+      steps.push(row, Math.round((gray - alpha) * FADE_STEP_COUNT));
     });
     return steps.join();
   }

@@ -56,7 +56,7 @@ export class WorldDrawing implements Drawing {
     }
   }
 
-  onDataForgotten(key: string | null): void {
+  onDataRemoved(key: string | null): void {
     if (key !== null) {
       if (key.startsWith(RAYS)) this.sensors.forget(key.slice(RAYS.length));
       return;

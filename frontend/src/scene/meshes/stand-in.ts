@@ -34,12 +34,12 @@ const MIN_SAVING = 0.2;
 const NORMAL_WEIGHT = 0.2;
 /** Corners at one place share a vertex if the cosine between their normals is at least this: 30 degrees. */
 const MIN_COSINE = 0.866;
-const COMPONENTS = 3;
+const COMPONENT_COUNT = 3;
 
 /** Simplifies a mesh repeatedly, each time as far as an error permits. */
 export function createStandIn(mesh: Triangles, simplifier: Simplifier): StandIn {
   const { positions, normals, index } = weld(mesh, simplifier);
-  const scale = positions.length > 0 ? simplifier.getScale(positions, COMPONENTS) : 0;
+  const scale = positions.length > 0 ? simplifier.getScale(positions, COMPONENT_COUNT) : 0;
   const levels: StandInLevel[] = [{ error: 0, index }];
   const weights = [NORMAL_WEIGHT, NORMAL_WEIGHT, NORMAL_WEIGHT];
   let finest = index;
@@ -47,7 +47,7 @@ export function createStandIn(mesh: Triangles, simplifier: Simplifier): StandIn 
   for (const step of ERROR_STEPS) {
     if (finest.length === 0) break;
     const [reducedIndex, deviation] = simplifier.simplifyWithAttributes(
-      finest, positions, COMPONENTS, normals, COMPONENTS, weights, null, 0, step, ["Prune"],
+      finest, positions, COMPONENT_COUNT, normals, COMPONENT_COUNT, weights, null, 0, step, ["Prune"],
     );
     if (reducedIndex.length > (1 - MIN_SAVING) * finest.length) continue;
     error += deviation * scale; // each starts where the one before ended
@@ -62,15 +62,15 @@ export function createStandIn(mesh: Triangles, simplifier: Simplifier): StandIn 
  * needs triangles that share vertices.
  */
 function weld({ positions, normals, index }: Triangles, simplifier: Simplifier): { positions: Float32Array; normals: Float32Array; index: Uint32Array } {
-  const weldedVertices = simplifier.generatePositionRemap(positions, COMPONENTS);
-  const corners = index?.length ?? positions.length / COMPONENTS;
+  const weldedVertices = simplifier.generatePositionRemap(positions, COMPONENT_COUNT);
+  const corners = index?.length ?? positions.length / COMPONENT_COUNT;
   const joinedIndices = new Uint32Array(corners);
   /**
    * The newest vertex at each position, and for each vertex the previous one at the same position; numbers plus one, 0 for none.
    */
   const [newestVertices, previousVertices] = [new Uint32Array(weldedVertices.length), new Uint32Array(corners)];
-  const [positionSums, normalSums] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];
-  const first = new Float32Array(corners * COMPONENTS);
+  const [positionSums, normalSums] = [new Float32Array(corners * COMPONENT_COUNT), new Float32Array(corners * COMPONENT_COUNT)];
+  const first = new Float32Array(corners * COMPONENT_COUNT);
   let count = 0;
   for (let corner = 0; corner < corners; corner++) {
     const vertex = index?.[corner] ?? corner;

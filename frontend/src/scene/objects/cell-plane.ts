@@ -14,7 +14,7 @@ import {
 import { OPAQUE_FROM } from "../materials";
 
 /** Cells along each side of a part; every graphics library supports textures of this size. */
-const PART_CELLS = 4096;
+const CELLS_PER_PART = 4096;
 
 const VERTEX = /* glsl */ `
   varying vec2 vUv;
@@ -63,9 +63,9 @@ export class CellPlane {
     if (size !== this.size) {
       this.clear();
       this.size = size;
-      for (let y = 0; y < height; y += PART_CELLS) {
-        for (let x = 0; x < width; x += PART_CELLS) {
-          this.add(x, y, Math.min(PART_CELLS, width - x), Math.min(PART_CELLS, height - y), resolution);
+      for (let y = 0; y < height; y += CELLS_PER_PART) {
+        for (let x = 0; x < width; x += CELLS_PER_PART) {
+          this.add(x, y, Math.min(CELLS_PER_PART, width - x), Math.min(CELLS_PER_PART, height - y), resolution);
         }
       }
       if (this.look) this.setLook(this.look);

@@ -21,7 +21,7 @@ export interface CovarianceStyle {
 const FLAT = 0.001;
 /** Larger angles are clamped to this, because they look alike. */
 const MAX_RADIANS = (89 * Math.PI) / 180;
-const SEGMENTS = 24;
+const SEGMENT_COUNT = 24;
 
 /**
  * The covariances of poses in three draw calls: an ellipsoid for the position and, for the orientation, a disc on each
@@ -37,9 +37,9 @@ export class CovarianceBatch {
   private readonly root = new Matrix4();
 
   constructor(parent: Object3D) {
-    this.balls = new CopyBatch(parent, createSphere(SEGMENTS));
-    this.discs = new CopyBatch(parent, createCylinder(SEGMENTS));
-    this.cones = new CopyBatch(parent, createCone(SEGMENTS));
+    this.balls = new CopyBatch(parent, createSphere(SEGMENT_COUNT));
+    this.discs = new CopyBatch(parent, createCylinder(SEGMENT_COUNT));
+    this.cones = new CopyBatch(parent, createCone(SEGMENT_COUNT));
   }
 
   /** Removes all covariances; at most `capacity` poses will be added. */

@@ -7,7 +7,7 @@ export interface PrincipalAxes {
   axes: Matrix4;
 }
 
-const SWEEPS = 12;
+const SWEEP_COUNT = 12;
 const PLANES = [
   [0, 1],
   [0, 2],
@@ -37,7 +37,7 @@ export function computePrincipalAxes(m: readonly [number, number, number, number
     line[p] = c * x - s * y;
     line[q] = s * x + c * y;
   };
-  for (let sweep = 0; sweep < SWEEPS; sweep++) {
+  for (let sweep = 0; sweep < SWEEP_COUNT; sweep++) {
     for (const [p, q] of PLANES) {
       if (elementAt(a, p, q) === 0) continue;
       const theta = (elementAt(a, q, q) - elementAt(a, p, p)) / (2 * elementAt(a, p, q));

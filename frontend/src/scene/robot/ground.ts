@@ -12,7 +12,7 @@ const STANDING_TOLERANCE = 0.01;
  * @param robot - its base consists of the links that no joint moves.
  * @param boxes - the bounding boxes of the visible parts of each link, by its name.
  */
-export function groundOf(robot: Pick<RobotScene, "links" | "joints">, boxes: ReadonlyMap<string, Box3>): number {
+export function computeGroundHeight(robot: Pick<RobotScene, "links" | "joints">, boxes: ReadonlyMap<string, Box3>): number {
   const bounds = unionOf(boxes, [...boxes.keys()]);
   if (bounds.isEmpty()) return 0;
   const margin = STANDING_TOLERANCE * bounds.getSize(new Vector3()).length();

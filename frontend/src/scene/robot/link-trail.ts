@@ -2,7 +2,7 @@ import { Vector3, type Matrix4, type Object3D } from "three";
 import { WideLines } from "../objects/wide-lines";
 
 const LENGTH = 2;
-const ELEMENTS = 100;
+const ELEMENT_COUNT = 100;
 const WIDTH = 0.01;
 const COLOR = 0x008080;
 
@@ -21,9 +21,9 @@ export class LinkTrail {
     const position = new Vector3().setFromMatrixPosition(pose);
     const [head, neck] = this.points;
     if (head?.equals(position)) return;
-    if (!head || !neck || head.distanceTo(neck) >= LENGTH / ELEMENTS) this.points.unshift(position);
+    if (!head || !neck || head.distanceTo(neck) >= LENGTH / ELEMENT_COUNT) this.points.unshift(position);
     else this.points[0] = position;
-    this.points.length = Math.min(this.points.length, ELEMENTS);
+    this.points.length = Math.min(this.points.length, ELEMENT_COUNT);
     this.ribbon.setStrips([new Float32Array(this.points.flatMap((point) => point.toArray()))]);
   }
 

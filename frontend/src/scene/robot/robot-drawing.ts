@@ -8,7 +8,7 @@ import type { Lighting } from "../light";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { MovingMeshes, type MovingView, type MovingPiece } from "./moving-meshes";
-import { groundOf } from "./ground";
+import { computeGroundHeight } from "./ground";
 import { LinkDrawing, type Displacement, type ReadLinkPose } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
@@ -106,7 +106,7 @@ export class RobotDrawing {
 
   /** Returns the height of the ground below the robot in the fixed frame, m. */
   computeGround(): number {
-    return groundOf(this.scene, this.boundsOfLinks());
+    return computeGroundHeight(this.scene, this.boundsOfLinks());
   }
 
   /**

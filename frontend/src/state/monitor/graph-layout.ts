@@ -32,8 +32,8 @@ export interface Layout {
 const LAYER_GAP = 56;
 const BOX_GAP = 14;
 const DUMMY_HEIGHT = 6;
-const ORDER_SWEEPS = 12;
-const PLACE_SWEEPS = 10;
+const ORDER_SWEEP_COUNT = 12;
+const PLACE_SWEEP_COUNT = 10;
 /** Half the distance between the two links of boxes that are linked in both directions. */
 const PAIR_OFFSET = 4;
 
@@ -166,7 +166,7 @@ function connectLayers(
 function orderLayers(layers: Vertex[][]): void {
   let bestLayers = layers.map((layer) => [...layer]);
   let fewest = countCrossings(layers);
-  for (let sweep = 0; sweep < ORDER_SWEEPS && fewest > 0; sweep++) {
+  for (let sweep = 0; sweep < ORDER_SWEEP_COUNT && fewest > 0; sweep++) {
     const isForward = sweep % 2 === 0;
     const places = new Map<Vertex, number>();
     const numberPlaces = (layer: Vertex[]): void => layer.forEach((vertex, index) => places.set(vertex, index));
@@ -214,11 +214,11 @@ function placeVertically(layers: readonly (readonly Vertex[])[]): void {
       y += vertex.height + BOX_GAP;
     }
   }
-  for (let sweep = 0; sweep < PLACE_SWEEPS; sweep++) {
+  for (let sweep = 0; sweep < PLACE_SWEEP_COUNT; sweep++) {
     const isForward = sweep % 2 === 0;
     for (const layer of isForward ? layers : [...layers].reverse()) {
       const wantedHeights = layer.map((vertex) => {
-        const neighbors = sweep >= PLACE_SWEEPS - 2 ? [...vertex.predecessors, ...vertex.successors] : isForward ? vertex.predecessors : vertex.successors;
+        const neighbors = sweep >= PLACE_SWEEP_COUNT - 2 ? [...vertex.predecessors, ...vertex.successors] : isForward ? vertex.predecessors : vertex.successors;
         return neighbors.length > 0 ? neighbors.reduce((sum, neighbor) => sum + neighbor.y, 0) / neighbors.length : vertex.y;
       });
       const offsets: number[] = [];

@@ -13,20 +13,20 @@ export type PlotTable = [number[], ...(number | null | undefined)[][]];
 export function tabulatePlot(
   series: readonly SeriesBuffer[],
   source: TimeSource,
-  start: number,
+  startTime: number,
   endTime: number,
-  columns: number,
+  pixelColumns: number,
 ): PlotTable {
   const spans = series.map((buffer) => {
     const end = Math.min(buffer.length, buffer.indexFrom(source, endTime) + 1);
-    return [Math.max(0, buffer.indexFrom(source, start) - 1), end] as const;
+    return [Math.max(0, buffer.indexFrom(source, startTime) - 1), end] as const;
   });
   const total = spans.reduce((sum, [start, end]) => sum + end - start, 0);
-  if (total <= 2 * columns) return tabulateSamples(series, source, spans);
+  if (total <= 2 * pixelColumns) return tabulateSamples(series, source, spans);
   // Columns must not shift while the window moves, or the line would flicker. The width is rounded, because differences
   // of times are not exact.
-  const width = Number(((endTime - start) / columns).toPrecision(5));
-  return tabulateExtremes(series, source, spans, Math.floor(start / width) * width, width, columns + 1);
+  const width = Number(((endTime - startTime) / pixelColumns).toPrecision(5));
+  return tabulateExtremes(series, source, spans, Math.floor(startTime / width) * width, width, pixelColumns + 1);
 }
 
 /**
@@ -37,14 +37,14 @@ export function formatCsv(
   names: readonly string[],
   series: readonly SeriesBuffer[],
   source: TimeSource,
-  start: number,
+  startTime: number,
   endTime: number,
 ): string {
   const spans = series.map((buffer) => {
     const times = buffer.timesOf(source);
     let end = buffer.indexFrom(source, endTime);
     while (end < times.length && times[end] === endTime) end++;
-    return [buffer.indexFrom(source, start), end] as const;
+    return [buffer.indexFrom(source, startTime), end] as const;
   });
   const [times, ...columns] = tabulateSamples(series, source, spans);
   const rows = times.map((time, row) => {

@@ -16,7 +16,7 @@ const DISTANCE_FACTORS = [1, 0.6, 0.35];
 const PITCH_COST = 0.15;
 const SIDE_COST = 0.05;
 /** The number of positions around a robot whose visibility counts. */
-const RING_POINTS = 8;
+const RING_POINT_COUNT = 8;
 /** The directions to try, with the maximum score of each. */
 const DIRECTIONS = PITCHES.flatMap((pitch, pitchIndex) =>
   SIDES.map((side, sideIndex) => ({ pitch, side, maxScore: 1 - pitchIndex * PITCH_COST - sideIndex * SIDE_COST })),
@@ -38,10 +38,10 @@ export function computeViewAround(values: ViewValues, { min, max }: Bounds, size
   const margin = Math.max(MARGIN, MARGIN * span);
   const center = scale(add(min, max), 0.5);
   const top: Vector = [center[0], center[1], max[2]];
-  const ring = Array.from({ length: RING_POINTS }, (_, i) => add(center, rotateZ([1, 0, 0], (i * 2 * Math.PI) / RING_POINTS), span / 2 + margin));
+  const ring = Array.from({ length: RING_POINT_COUNT }, (_, i) => add(center, rotateZ([1, 0, 0], (i * 2 * Math.PI) / RING_POINT_COUNT), span / 2 + margin));
   const fittedValues = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -margin), max: add(max, [1, 1, 1], margin) }, size);
   const maxDistance = number(fittedValues, "Distance", 0);
-  const computeCoveredShare = (viewpoint: Vector): number => ring.filter((position) => !isVisible(viewpoint, position)).length / RING_POINTS;
+  const computeCoveredShare = (viewpoint: Vector): number => ring.filter((position) => !isVisible(viewpoint, position)).length / RING_POINT_COUNT;
   for (const distanceFactor of DISTANCE_FACTORS) {
     let bestView: { score: number; values: ViewValues } | null = null;
     for (const { maxScore, pitch, side } of DIRECTIONS) {

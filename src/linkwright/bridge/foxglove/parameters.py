@@ -12,7 +12,7 @@ from linkwright.graph import EndpointKind, Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.graph.parameters.files import plain_value
 
-_PATIENCE = 2.0
+_RESPONSE_TIMEOUT_S = 2.0
 _SERVICE = "/get_parameters"
 
 
@@ -106,7 +106,7 @@ class Parameters:
         done_event = asyncio.Event()
         future.add_done_callback(lambda _: loop.call_soon_threadsafe(done_event.set))
         try:
-            await asyncio.wait_for(done_event.wait(), _PATIENCE)
+            await asyncio.wait_for(done_event.wait(), _RESPONSE_TIMEOUT_S)
             return future.result()
         except asyncio.TimeoutError:
             return None

@@ -14,7 +14,7 @@ from linkwright.graph import EndpointKind, Node
 from linkwright.messages import deserialize, get_service, serialize
 from linkwright.messages.schema_text import schema_of
 
-_PATIENCE = 10.0
+_CALL_TIMEOUT_S = 10.0
 """The timeout of a service call, in seconds."""
 
 
@@ -29,7 +29,7 @@ class CallFailedError(Exception):
 class OfferedService:
     """A service of the graph, with its type and the ID that clients use."""
 
-    number: int
+    service_id: int
     name: str
     type_name: str
 
@@ -41,7 +41,7 @@ class OfferedService:
         schemas = {
             message_kind: schema_of(f"{self.type_name}_{message_kind}") for message_kind in ("Request", "Response")
         }
-        advertisement: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
+        advertisement: dict[str, Any] = {"id": self.service_id, "name": self.name, "type": self.type_name}
         for part, schema in schemas.items():
             advertisement[part.lower()] = {
                 "encoding": ENCODING,
@@ -66,7 +66,7 @@ class Services:
         self._filter = name_filter
         self._services: dict[tuple[str, str], OfferedService] = {}
         self._clients: dict[int, ServiceClient[Any, Any]] = {}
-        self._last_number = 0
+        self._last_id = 0
 
     def all(self) -> list[OfferedService]:
         """Return the currently available services."""
@@ -79,18 +79,18 @@ class Services:
             for endpoint in self._node.graph.endpoints()
             if endpoint.kind is EndpointKind.SERVICE and self._filter.accepts(endpoint.name)
         }
-        removed = [self._services.pop(key).number for key in list(self._services) if key not in current]
-        for number in removed:
-            if number in self._clients:
-                self._node.destroy_client(self._clients.pop(number))
+        removed = [self._services.pop(key).service_id for key in list(self._services) if key not in current]
+        for service_id in removed:
+            if service_id in self._clients:
+                self._node.destroy_client(self._clients.pop(service_id))
         added = []
         for name, type_name in sorted(current - self._services.keys()):
             try:
                 get_service(type_name)
             except LinkwrightError:
                 continue  # the definition of the service's type is not available
-            self._last_number += 1
-            self._services[name, type_name] = OfferedService(self._last_number, name, type_name)
+            self._last_id += 1
+            self._services[name, type_name] = OfferedService(self._last_id, name, type_name)
             added.append(self._services[name, type_name])
         return added, removed
 
@@ -104,7 +104,7 @@ class Services:
             (
                 offered_service
                 for offered_service in self._services.values()
-                if offered_service.number == request.service
+                if offered_service.service_id == request.service
             ),
             None,
         )
@@ -113,9 +113,9 @@ class Services:
         if request.encoding != ENCODING:
             raise CallFailedError(f"the encoding '{request.encoding[:40]}' is not supported: use {ENCODING}")
         service_class: Any = get_service(service.type_name)
-        client = self._clients.get(service.number)
+        client = self._clients.get(service.service_id)
         if client is None:
-            client = self._clients[service.number] = self._node.create_client(service_class, service.name)
+            client = self._clients[service.service_id] = self._node.create_client(service_class, service.name)
         try:
             service_request = deserialize(request.data, service_class.Request)
         except LinkwrightError as error:
@@ -125,10 +125,10 @@ class Services:
         response_event = asyncio.Event()
         future.add_done_callback(lambda _: loop.call_soon_threadsafe(response_event.set))
         try:
-            await asyncio.wait_for(response_event.wait(), _PATIENCE)
+            await asyncio.wait_for(response_event.wait(), _CALL_TIMEOUT_S)
         except asyncio.TimeoutError:
             client.remove_pending_request(future)
-            raise CallFailedError(f"'{service.name}' did not respond within {_PATIENCE:g} s") from None
+            raise CallFailedError(f"'{service.name}' did not respond within {_CALL_TIMEOUT_S:g} s") from None
         try:
             response: Any = future.result()
             return bytes(serialize(response))

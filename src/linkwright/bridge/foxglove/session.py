@@ -85,7 +85,7 @@ class Session:
     def on_graph_changed(self, removed_channels: list[int]) -> None:
         """Remove subscriptions to channels that no longer exist, and update the connection graph."""
         for subscription_id, forwarding in list(self._forwardings.items()):
-            if forwarding.channel.number in removed_channels:
+            if forwarding.channel.channel_id in removed_channels:
                 self._forwardings.pop(subscription_id).close()
         self.send_connections()
 

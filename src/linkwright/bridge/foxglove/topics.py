@@ -23,7 +23,7 @@ _DEPTH = 100
 class Channel:
     """A topic with its type and channel id."""
 
-    number: int
+    channel_id: int
     topic: str
     type_name: str
     schema: str
@@ -31,7 +31,7 @@ class Channel:
     def advertisement(self) -> dict[str, Any]:
         """Return the channel as an entry of the protocol's ``advertise`` message."""
         return {
-            "id": self.number,
+            "id": self.channel_id,
             "topic": self.topic,
             "encoding": ENCODING,
             "schemaName": self.type_name,
@@ -53,15 +53,15 @@ class Channels:
         self._filter = name_filter
         self._channels: dict[tuple[str, str], Channel] = {}
         self._unknown_types: set[str] = set()
-        self._last_number = 0
+        self._last_id = 0
 
     def all(self) -> list[Channel]:
         """Return the currently available channels."""
         return list(self._channels.values())
 
-    def get(self, number: int) -> Channel | None:
+    def get(self, channel_id: int) -> Channel | None:
         """Return the channel with an ID, or None if there is none."""
-        return next((channel for channel in self._channels.values() if channel.number == number), None)
+        return next((channel for channel in self._channels.values() if channel.channel_id == channel_id), None)
 
     def poll_changes(self) -> tuple[list[Channel], list[int]]:
         """Return the channels that were added since the last call, and the IDs of removed channels."""
@@ -70,7 +70,7 @@ class Channels:
             for endpoint in self._node.graph.endpoints()
             if endpoint.kind is EndpointKind.PUBLISHER and self._filter.accepts(endpoint.name)
         }
-        removed = [self._channels.pop(key).number for key in list(self._channels) if key not in current]
+        removed = [self._channels.pop(key).channel_id for key in list(self._channels) if key not in current]
         added = [
             channel
             for key in sorted(current - self._channels.keys())
@@ -86,8 +86,8 @@ class Channels:
                 self._unknown_types.add(type_name)
                 self._node.get_logger().warning(f"'{topic}' is not offered: {error.diagnostics[0].message}")
             return None
-        self._last_number += 1
-        channel = self._channels[topic, type_name] = Channel(self._last_number, topic, type_name, schema)
+        self._last_id += 1
+        channel = self._channels[topic, type_name] = Channel(self._last_id, topic, type_name, schema)
         return channel
 
 
@@ -98,14 +98,14 @@ class Forwarding:
         node: the node that subscribes.
         channel: the channel to forward.
         client: the client that receives the messages.
-        number: the client's ID of the subscription.
+        subscription_id: the client's ID of the subscription.
     """
 
-    def __init__(self, node: Node, channel: Channel, client: Client, number: int) -> None:
+    def __init__(self, node: Node, channel: Channel, client: Client, subscription_id: int) -> None:
         self.channel = channel
         self._node = node
         self._client = client
-        self._number = number
+        self._subscription_id = subscription_id
         self._subscription: Subscription[Any] = Subscription(
             node.handle, get_message(channel.type_name), channel.topic, self._qos(), self._forward, raw=True
         )
@@ -127,7 +127,7 @@ class Forwarding:
 
     def _forward(self, data: bytes, info: MessageInfo) -> None:
         stamp = info.source_timestamp or self._node.get_clock().now().nanoseconds
-        self._client.send_data(message_data(self._number, stamp, bytes(data)))
+        self._client.send_data(message_data(self._subscription_id, stamp, bytes(data)))
 
 
 class Publication:

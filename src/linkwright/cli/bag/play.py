@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 _RATE_STEP = 0.1
+"""The change of the playback rate by one press of a key."""
 _DEFAULT_CLOCK_HZ = 40.0
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from linkwright.viewer import Viewer
 
 _PASS_SCORE = 50.0
+"""The minimum mean score, of 100 points, with which a program passes."""
 
 
 def configure_exercises(parser: argparse.ArgumentParser) -> None:

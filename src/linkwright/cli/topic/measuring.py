@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.cli.topic.rates import RateWindow
 
-_RATE_WINDOW = 10_000
-_DELAY_WINDOW = 10_000
+_RATE_WINDOW_LENGTH = 10_000
+_DELAY_WINDOW_LENGTH = 10_000
 _STAMP_FORMATS = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """The `struct` formats of a stamp, by the byte order in the second byte of the CDR header."""
 _CDR_HEADER = 4
-_SIZE_WINDOW = 100
-_REPORT_PERIOD = 1.0
+_SIZE_WINDOW_LENGTH = 100
+_REPORT_PERIOD_S = 1.0
 
 
 def configure_hz(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +40,7 @@ def configure_hz(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="the topics, such as /chatter; several topics are printed as a table",
     )
-    _add_window_argument(parser, _RATE_WINDOW)
+    _add_window_argument(parser, _RATE_WINDOW_LENGTH)
     parser.add_argument(
         "--filter", metavar="EXPR", help="count only messages 'm' that satisfy this expression, such as 'm.data > 3'"
     )
@@ -93,7 +93,7 @@ def configure_delay(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``topic delay``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="a topic whose messages have a header")
-    _add_window_argument(parser, _DELAY_WINDOW)
+    _add_window_argument(parser, _DELAY_WINDOW_LENGTH)
     add_subscription_qos_arguments(parser)
 
 
@@ -136,7 +136,7 @@ def configure_bw(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of ``topic bw``."""
     add_session_arguments(parser)
     parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /camera/image_raw")
-    _add_window_argument(parser, _SIZE_WINDOW)
+    _add_window_argument(parser, _SIZE_WINDOW_LENGTH)
     add_subscription_qos_arguments(parser)
 
 
@@ -211,5 +211,5 @@ async def _report_until_finished(session: Session, text: Callable[[], str | None
         if line is not None:
             print(line)
 
-    session.every(_REPORT_PERIOD, report)
+    session.every(_REPORT_PERIOD_S, report)
     return await session.wait_until_finished() or 0

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.graph import Publisher
 
-_KEEP_ALIVE = 0.1
-_WAITING_NOTICE_PERIOD = 1.0
+_KEEP_ALIVE_S = 0.1
+_WAITING_NOTICE_PERIOD_S = 1.0
 _MUTUAL_DISCOVERY_DELAY = 0.15
 """Seconds until a discovered subscription has also discovered the publisher.
 
@@ -66,7 +66,7 @@ def configure_pub(parser: argparse.ArgumentParser) -> None:
         "--keep-alive",
         metavar="SECONDS",
         type=float,
-        default=_KEEP_ALIVE,
+        default=_KEEP_ALIVE_S,
         help="the time to keep running after the last message (default: %(default)s)",
     )
     parser.add_argument("-n", "--node-name", metavar="NODE", help="the name of the publishing node")
@@ -119,7 +119,7 @@ async def _wait_for_subscriptions(
         if timeout is not None and waited_seconds >= timeout:
             return False
         print(f"Waiting for at least {required_count} matching subscription(s)...")
-        step = _WAITING_NOTICE_PERIOD if timeout is None else min(_WAITING_NOTICE_PERIOD, timeout - waited_seconds)
+        step = _WAITING_NOTICE_PERIOD_S if timeout is None else min(_WAITING_NOTICE_PERIOD_S, timeout - waited_seconds)
         await session.wait_until(lambda: publisher.get_subscription_count() >= required_count, step)
         waited_seconds += step
     return True

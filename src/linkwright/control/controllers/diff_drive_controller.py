@@ -125,8 +125,8 @@ class DiffDriveController(LimitedDrive[Parameters]):
         forward, angular = (limiter.approach(speed, period_s) for limiter, speed in pairs)
         left_speed, right_speed = self._drive.wheel_speeds(forward, angular)
         count = len(self.commands) // 2
-        for number, command in enumerate(self.commands):
-            command.value = left_speed if number < count else right_speed
+        for index, command in enumerate(self.commands):
+            command.value = left_speed if index < count else right_speed
         if self._settings.open_loop:
             self._odometry.odometer.add_commanded((forward, 0.0, angular), period_s)
         else:
@@ -144,7 +144,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         if isnan(left_mean) or isnan(right_mean):
             if not moves:
                 return
-            invalid_index = next(number for number, value in enumerate(values) if isnan(value))
+            invalid_index = next(index for index, value in enumerate(values) if isnan(value))
             raise ControllerError(
                 phrase(
                     "Either the left or right wheel {kind} is invalid for index [{index}]",

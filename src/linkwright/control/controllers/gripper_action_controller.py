@@ -85,8 +85,8 @@ class Gripper(Controller[P]):
         """Create the action server."""
         self._active = False
         self._goal: Goal | None = None
-        kind = get_action(self.ACTION)
-        self._result, self._feedback = kind.Result, kind.Feedback
+        action_class = get_action(self.ACTION)
+        self._result, self._feedback = action_class.Result, action_class.Feedback
         self._action = ControllerAction(
             self.node, self.ACTION, "~/gripper_cmd", is_allowed=self._is_allowed, begin=self._begin, cancel=self._cancel
         )

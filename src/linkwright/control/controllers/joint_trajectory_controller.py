@@ -95,11 +95,11 @@ class JointTrajectoryController(Controller[Parameters]):
         parameters = self.parameters
         count = len(parameters.command_interfaces)
         self._command: dict[str, list[CommandInterface]] = {
-            kind: self.commands[number::count] for number, kind in enumerate(parameters.command_interfaces)
+            kind: self.commands[index::count] for index, kind in enumerate(parameters.command_interfaces)
         }
         count = len(parameters.state_interfaces)
         self._state: dict[str, list[StateInterface]] = {
-            kind: self.states[number::count] for number, kind in enumerate(parameters.state_interfaces)
+            kind: self.states[index::count] for index, kind in enumerate(parameters.state_interfaces)
         }
         self._measured_states = tuple(self._state.get(kind, []) for kind in (POSITION, VELOCITY, ACCELERATION))
         self._has_velocity_error = VELOCITY in self._state and (VELOCITY in self._command or EFFORT in self._command)
@@ -377,9 +377,9 @@ class JointTrajectoryController(Controller[Parameters]):
             self._update_gains()
             (commands,) = self._command.values()
             errors = self._error
-            for number, pid in enumerate(self._pids):
-                command = pid.command(errors.positions[number], period_s, errors.velocities[number])
-                commands[number].value = target.velocities[number] * self._velocity_scales[number] + command
+            for index, pid in enumerate(self._pids):
+                command = pid.command(errors.positions[index], period_s, errors.velocities[index])
+                commands[index].value = target.velocities[index] * self._velocity_scales[index] + command
         else:
             for kind, commands in self._command.items():
                 values = (

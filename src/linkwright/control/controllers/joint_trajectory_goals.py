@@ -47,10 +47,10 @@ def trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str |
             f"Received trajectory with non-zero start time ({start / NANOSECONDS_PER_SECOND:f}) that ends in the past "
             f"({end / NANOSECONDS_PER_SECOND:f})"
         )
-    for number, name in enumerate(names):
+    for index, name in enumerate(names):
         if name not in parameters.joints:
             return f"Incoming joint {name} doesn't match the controller's joints."
-        if name in names[:number]:
+        if name in names[:index]:
             return f"Incoming joint {name} appears twice."
     if not parameters.allow_nonzero_velocity_at_trajectory_end:
         for name, velocity in zip(names, last_point.velocities, strict=False):
@@ -61,23 +61,23 @@ def trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str |
 
 def _points_error(points: Sequence[Any], count: int, *, allow_integration: bool) -> str | None:
     previous_ns = 0
-    for number, point in enumerate(points):
+    for index, point in enumerate(points):
         time_ns = nanoseconds(point.time_from_start)
-        if number and time_ns <= previous_ns:
+        if index and time_ns <= previous_ns:
             return (
-                f"Time between points {number - 1} and {number} is not strictly increasing, "
+                f"Time between points {index - 1} and {index} is not strictly increasing, "
                 f"it is {previous_ns / NANOSECONDS_PER_SECOND:f} and {time_ns / NANOSECONDS_PER_SECOND:f} respectively"
             )
         previous_ns = time_ns
         lists = {field: getattr(point, field) for field in ("positions", "velocities", "accelerations")}
         if not any(len(values) for values in lists.values()) and allow_integration:
-            return f"Point #{number} has neither positions nor velocities nor accelerations."
+            return f"Point #{index} has neither positions nor velocities nor accelerations."
         for name, values in lists.items():
             is_optional = allow_integration or name != "positions"
             if len(values) != count and not (is_optional and not len(values)):
-                return f"Mismatch between joint_names size ({count}) and {name} ({len(values)}) at point #{number}."
+                return f"Mismatch between joint_names size ({count}) and {name} ({len(values)}) at point #{index}."
             if not all(map(isfinite, values)):
-                return f"The {name} at point #{number} are not all finite."
+                return f"The {name} at point #{index} are not all finite."
         if len(point.effort):
             return "Trajectories with effort fields are currently not supported."
     return None

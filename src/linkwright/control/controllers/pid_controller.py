@@ -139,12 +139,12 @@ class PidController(Controller[Parameters]):
         self._export_states()
         if self._awaits_states and all(map(isfinite, self._measured_values)):
             self._set_first_references()
-        for number, (name, pid, command) in enumerate(
+        for index, (name, pid, command) in enumerate(
             zip(self.parameters.dof_names, self._pids, self.commands, strict=True)
         ):
             gains = self.parameters.gains[name]
-            if isfinite(self.references[number].value) and isfinite(self._measured_values[number]):
-                command.value = self._command(number, pid, gains, period_s)
+            if isfinite(self.references[index].value) and isfinite(self._measured_values[index]):
+                command.value = self._command(index, pid, gains, period_s)
         if self._output.is_wanted:
             self._publish(time_ns, period_s)
 
@@ -159,29 +159,27 @@ class PidController(Controller[Parameters]):
         for exported, value in zip(self.exported, self._measured_values, strict=True):
             exported.value = value
 
-    def _command(self, number: int, pid: Pid, gains: Gains, period_s: float) -> float:
+    def _command(self, index: int, pid: Pid, gains: Gains, period_s: float) -> float:
         pid.gains = gains.pid
-        rate = self._error_rate(number)
-        reference = self._reference_rate(number) if self._has_rates else self.references[number].value
+        rate = self._error_rate(index)
+        reference = self._reference_rate(index) if self._has_rates else self.references[index].value
         feedforward = gains.feedforward_gain * reference if self._uses_feedforward and isfinite(reference) else 0.0
-        return feedforward + pid.command(self._error(number), period_s, rate if isfinite(rate) else None)
+        return feedforward + pid.command(self._error(index), period_s, rate if isfinite(rate) else None)
 
     @property
     def _has_rates(self) -> bool:
         return len(self.references) == 2 * len(self._pids)
 
-    def _error(self, number: int) -> float:
-        reference, measured = self.references[number].value, self._measured_values[number]
-        wraps_around = self.parameters.gains[self.parameters.dof_names[number]].angle_wraparound
+    def _error(self, index: int) -> float:
+        reference, measured = self.references[index].value, self._measured_values[index]
+        wraps_around = self.parameters.gains[self.parameters.dof_names[index]].angle_wraparound
         return shortest_turn(measured, reference) if wraps_around else reference - measured
 
-    def _reference_rate(self, number: int) -> float:
-        return self.references[len(self._pids) + number].value if self._has_rates else nan
+    def _reference_rate(self, index: int) -> float:
+        return self.references[len(self._pids) + index].value if self._has_rates else nan
 
-    def _error_rate(self, number: int) -> float:
-        return (
-            self._reference_rate(number) - self._measured_values[len(self._pids) + number] if self._has_rates else nan
-        )
+    def _error_rate(self, index: int) -> float:
+        return self._reference_rate(index) - self._measured_values[len(self._pids) + index] if self._has_rates else nan
 
     # --- topics -------------------------------------------------------------------------------------------------------
 
@@ -234,18 +232,18 @@ class PidController(Controller[Parameters]):
     def _publish(self, time_ns: int, period_s: float) -> None:
         message = get_message("control_msgs/msg/MultiDOFStateStamped")
         states = []
-        for number, name in enumerate(self.parameters.measured):
-            rate_index = len(self._pids) + number
+        for index, name in enumerate(self.parameters.measured):
+            rate_index = len(self._pids) + index
             states.append(
                 self._state_type(
                     name=name,
-                    reference=self.references[number].value,
-                    feedback=self._measured_values[number],
+                    reference=self.references[index].value,
+                    feedback=self._measured_values[index],
                     feedback_dot=self._measured_values[rate_index] if self._has_rates else nan,
-                    error=self._error(number),
-                    error_dot=self._error_rate(number),
+                    error=self._error(index),
+                    error_dot=self._error_rate(index),
                     time_step=period_s,
-                    output=self.commands[number].value,
+                    output=self.commands[index].value,
                 )
             )
         self._output.publish(message(header=Header(stamp=Time.from_nanoseconds(time_ns)), dof_states=states))

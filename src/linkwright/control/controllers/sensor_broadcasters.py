@@ -197,11 +197,11 @@ class SensorBroadcaster(Controller[P]):
         """Return the state interfaces of the sensor."""
 
     @abstractmethod
-    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+    def message(self, message_class: Any, header: Header, values: Sequence[float]) -> Any:
         """Return a message that contains the values of the state interfaces.
 
         Args:
-            kind: the message class.
+            message_class: the message class.
             header: the header of the message.
             values: the values, in the order of `state_interfaces`.
         """
@@ -243,10 +243,10 @@ class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
         vectors = [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
         return [f"{self.parameters.sensor_name}/{item}" for item in (*orientation, *vectors)]
 
-    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+    def message(self, message_class: Any, header: Header, values: Sequence[float]) -> Any:
         """Return an IMU message with the covariances from the parameters."""
         parameters = self.parameters
-        return kind(
+        return message_class(
             header=header,
             orientation=from_values(Quaternion, values[:4]),
             orientation_covariance=parameters.static_covariance_orientation,
@@ -290,7 +290,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
         """Return the interfaces of the forces, then of the torques."""
         return [name for name in self._names if name]
 
-    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+    def message(self, message_class: Any, header: Header, values: Sequence[float]) -> Any:
         """Return a wrench message.
 
         Axes without an interface are 0 before the offset and the multiplier are applied.
@@ -304,7 +304,9 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
             )
         ]
         wrench = get_message("geometry_msgs/msg/Wrench")
-        return kind(header=header, wrench=wrench(force=_vector(wrench_values[:3]), torque=_vector(wrench_values[3:])))
+        return message_class(
+            header=header, wrench=wrench(force=_vector(wrench_values[:3]), torque=_vector(wrench_values[3:]))
+        )
 
 
 class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
@@ -317,10 +319,10 @@ class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
         """Return the range interface."""
         return [f"{self.parameters.sensor_name}/range"]
 
-    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+    def message(self, message_class: Any, header: Header, values: Sequence[float]) -> Any:
         """Return a range message with the limits from the parameters."""
         parameters = self.parameters
-        return kind(
+        return message_class(
             header=header,
             radiation_type=parameters.radiation_type,
             field_of_view=parameters.field_of_view,
@@ -374,11 +376,11 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         """Return the interfaces of the position, then of the orientation."""
         return self._names
 
-    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+    def message(self, message_class: Any, header: Header, values: Sequence[float]) -> Any:
         """Return a pose message."""
         pose = get_message("geometry_msgs/msg/Pose")
         point = get_message("geometry_msgs/msg/Point")
-        return kind(
+        return message_class(
             header=header,
             pose=pose(position=from_values(point, values[:3]), orientation=from_values(Quaternion, values[3:])),
         )

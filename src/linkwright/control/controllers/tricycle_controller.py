@@ -25,6 +25,7 @@ _NO_VARIANCES = (0.0,) * 6
 _MAX_FULL_SPEED_ERROR, _MIN_CREEP_ERROR = pi / 6.0, pi / 2.0
 """The steering errors, in rad, below which the wheel has its full speed, and above which it hardly moves."""
 _CREEP_FRACTION = 0.01
+"""The fraction of the speed while the steering angle is far from its target."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -50,8 +50,8 @@ class ManagerClient:
         Raises:
             NoManagerError: the manager is not available, or does not respond.
         """
-        kind = "".join(part.capitalize() for part in service.split("_"))
-        return await self._call(f"controller_manager_msgs/srv/{kind}", service, fields)
+        type_name = "".join(part.capitalize() for part in service.split("_"))
+        return await self._call(f"controller_manager_msgs/srv/{type_name}", service, fields)
 
     async def set_parameter(self, name: str, value: Any) -> bool:
         """Set a parameter of the manager, and return whether the value was accepted.
@@ -75,14 +75,14 @@ class ManagerClient:
             timeout=duration,
         )
 
-    async def _call(self, kind: str, service: str, fields: dict[str, Any]) -> Any:
-        service_type = get_service(kind)
+    async def _call(self, service_type: str, service: str, fields: dict[str, Any]) -> Any:
+        service_class = get_service(service_type)
         name = f"{self.manager}/{service}"
-        client = self._node.create_client(service_type, name)
+        client = self._node.create_client(service_class, name)
         try:
             await self._wait_for_server(client, name)
             for attempt in range(1, _ATTEMPTS + 1):
-                future = client.call_async(service_type.Request(**fields))
+                future = client.call_async(service_class.Request(**fields))
                 if await wait_for_future(self._node, future, self._call_timeout):
                     return future.result()
                 client.remove_pending_request(future)

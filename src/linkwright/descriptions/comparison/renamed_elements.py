@@ -11,6 +11,7 @@ from linkwright.xmltree import Element
 _RENAMED = frozenset({"world", "model", "link", "joint", "sensor", "frame", "plugin", "include"})
 """The tags of elements whose names other programs use."""
 _MIN_SIMILARITY = 0.5
+"""The minimum similarity, from 0 to 1, of a removed and an added element that count as renamed."""
 _MAX_PAIRS = 2500
 """The maximum number of possible pairs. Descriptions with more pairs differ in their contents rather than in names."""
 

@@ -85,7 +85,7 @@ def added_constants(word: TextRange) -> Iterator[Candidate]:
     expression_range = expression_range.subrange(start, start + len(body))
     tree = _parse(body)
     if tree is not None:
-        yield from _terms(tree, expression_range)
+        yield from _find_terms(tree, expression_range)
 
 
 def is_constant(word: TextRange) -> bool:
@@ -152,24 +152,24 @@ def _used_names(tree: ast.AST) -> set[str]:
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
-def _terms(node: ast.expr, expression_range: TextRange) -> Iterator[Candidate]:
+def _find_terms(node: ast.expr, expression_range: TextRange) -> Iterator[Candidate]:
     value = _literal_value(node)
     if value is not None:
         yield _number_candidate(expression_range, node, value)
     elif isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub)):
-        signed_candidate = _signed_term(node, expression_range)
-        yield from _terms(node.right, expression_range) if signed_candidate is None else (signed_candidate,)
-        yield from _terms(node.left, expression_range)
+        signed_candidate = _find_signed_term(node, expression_range)
+        yield from _find_terms(node.right, expression_range) if signed_candidate is None else (signed_candidate,)
+        yield from _find_terms(node.left, expression_range)
     elif isinstance(node, ast.BinOp) and _converts_degrees(node):
         while isinstance(node, ast.BinOp):
             node = node.left
-        yield from _terms(node, expression_range)
+        yield from _find_terms(node, expression_range)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
-        yield from _terms(node.operand, expression_range)
+        yield from _find_terms(node.operand, expression_range)
     elif isinstance(node, ast.Call) and len(node.args) == 1 and isinstance(node.func, (ast.Name, ast.Attribute)):
         name = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
         if name == "radians":
-            yield from _terms(node.args[0], expression_range)
+            yield from _find_terms(node.args[0], expression_range)
 
 
 def _converts_degrees(node: ast.expr) -> bool:
@@ -181,7 +181,7 @@ def _converts_degrees(node: ast.expr) -> bool:
     )
 
 
-def _signed_term(node: ast.BinOp, expression_range: TextRange) -> Candidate | None:
+def _find_signed_term(node: ast.BinOp, expression_range: TextRange) -> Candidate | None:
     """Return a candidate for the last number of a sum, including its sign.
 
     The result is None if the last term is not a number, or is in brackets.

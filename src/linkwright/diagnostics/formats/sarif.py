@@ -102,8 +102,8 @@ def _result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
     if diagnostic.span is not None:
         result["locations"] = [{"physicalLocation": _location(diagnostic.span)}]
     related = [
-        {"id": number, "message": {"text": note.message}, "physicalLocation": _location(note.span)}
-        for number, note in enumerate(diagnostic.notes)
+        {"id": index, "message": {"text": note.message}, "physicalLocation": _location(note.span)}
+        for index, note in enumerate(diagnostic.notes)
         if note.span is not None
     ]
     if related:

@@ -130,8 +130,10 @@ class ActionClient(ActionEndpoint):
         self._uuid = get_message("unique_identifier_msgs/msg/UUID")
         impl = self._action_type.Impl
 
-        def client(kind: Any, name: str, qos: QoSProfile) -> Client[Any, Any]:
-            return node.create_client(kind, self._full_name(name), qos_profile=qos, callback_group=callback_group)
+        def client(service_class: Any, name: str, qos: QoSProfile) -> Client[Any, Any]:
+            return node.create_client(
+                service_class, self._full_name(name), qos_profile=qos, callback_group=callback_group
+            )
 
         self._goal_client = client(impl.SendGoalService, "send_goal", goal_service_qos_profile)
         self._cancel_client = client(impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile)

@@ -103,9 +103,9 @@ class _Parser:
         self._tokens = self._tokenize()
 
     def parse(self) -> Condition:
-        condition = self._disjunction()
+        condition = self._parse_disjunction()
         if self._tokens[0] is not _END:
-            raise self._error(f"unexpected '{self._tokens[0].text}'")
+            raise self._make_error(f"unexpected '{self._tokens[0].text}'")
         return condition
 
     def _tokenize(self) -> list[_Token]:
@@ -114,84 +114,84 @@ class _Parser:
         while self._text[index:].strip():
             match = _TOKEN.match(self._text, index)
             if match is None or match.lastgroup is None:
-                raise self._error(f"'{self._text[index:].strip()[:10]}' cannot be parsed")
+                raise self._make_error(f"'{self._text[index:].strip()[:10]}' cannot be parsed")
             tokens.append(_Token(match.lastgroup, match[match.lastgroup]))
             index = match.end()
         return [*tokens, _END]
 
-    def _error(self, problem: str) -> ContentFilterError:
+    def _make_error(self, problem: str) -> ContentFilterError:
         return ContentFilterError(f"content filter '{self._text}': {problem}")
 
-    def _next(self) -> _Token:
+    def _next_token(self) -> _Token:
         return self._tokens.pop(0) if self._tokens[0] is not _END else _END
 
     def _accept(self, symbol: str) -> bool:
         token = self._tokens[0]
         if symbol in (token.word, token.text if token.kind == "sign" else None):
-            self._next()
+            self._next_token()
             return True
         return False
 
     def _expect(self, symbol: str) -> None:
         if not self._accept(symbol):
-            raise self._error(f"'{symbol}' is missing before '{self._tokens[0].text or 'its end'}'")
+            raise self._make_error(f"'{symbol}' is missing before '{self._tokens[0].text or 'its end'}'")
 
     # --- the grammar ---------------------------------------------------------------------------------------------
 
-    def _disjunction(self) -> Condition:
-        conditions = [self._conjunction()]
+    def _parse_disjunction(self) -> Condition:
+        conditions = [self._parse_conjunction()]
         while self._accept("OR"):
-            conditions.append(self._conjunction())
+            conditions.append(self._parse_conjunction())
         return (
             conditions[0]
             if len(conditions) == 1
             else lambda message: any(condition(message) for condition in conditions)
         )
 
-    def _conjunction(self) -> Condition:
-        conditions = [self._negation()]
+    def _parse_conjunction(self) -> Condition:
+        conditions = [self._parse_negation()]
         while self._accept("AND"):
-            conditions.append(self._negation())
+            conditions.append(self._parse_negation())
         return (
             conditions[0]
             if len(conditions) == 1
             else lambda message: all(condition(message) for condition in conditions)
         )
 
-    def _negation(self) -> Condition:
+    def _parse_negation(self) -> Condition:
         if self._accept("NOT"):
-            condition = self._negation()
+            condition = self._parse_negation()
             return lambda message: not condition(message)
         if self._accept("("):
-            condition = self._disjunction()
+            condition = self._parse_disjunction()
             self._expect(")")
             return condition
-        return self._predicate()
+        return self._parse_predicate()
 
-    def _predicate(self) -> Condition:
-        operand = self._value()
+    def _parse_predicate(self) -> Condition:
+        operand = self._parse_operand()
         if self._accept("NOT"):
             self._expect("BETWEEN")
-            between = self._between(operand)
+            between = self._parse_between(operand)
             return lambda message: not between(message)
         if self._accept("BETWEEN"):
-            return self._between(operand)
-        token = self._next()
+            return self._parse_between(operand)
+        token = self._next_token()
         if token.word in ("LIKE", "MATCH"):
-            return self._like(operand, regular=token.word == "MATCH")
+            return self._parse_like(operand, regular=token.word == "MATCH")
         relation = _RELATIONS.get(token.text)
         if relation is None:
-            raise self._error(f"a comparison is missing before '{token.text or 'its end'}'")
-        return _comparison(operand, relation, self._value())
+            raise self._make_error(f"a comparison is missing before '{token.text or 'its end'}'")
+        return _make_comparison(operand, relation, self._parse_operand())
 
-    def _between(self, value: _Value) -> Condition:
-        low = _comparison(value, operator.ge, self._value())
+    def _parse_between(self, value: _Value) -> Condition:
+        low = _make_comparison(value, operator.ge, self._parse_operand())
         self._expect("AND")
-        high = _comparison(value, operator.le, self._value())
+        high = _make_comparison(value, operator.le, self._parse_operand())
         return lambda message: low(message) and high(message)
 
-    def _like(self, value: _Value, *, regular: bool) -> Condition:
-        pattern = str(self._value()(None))
+    def _parse_like(self, value: _Value, *, regular: bool) -> Condition:
+        pattern = str(self._parse_operand()(None))
         try:
             regex = re.compile(
                 pattern
@@ -199,43 +199,43 @@ class _Parser:
                 else "".join(_WILDCARDS.get(character, re.escape(character)) for character in pattern)
             )
         except re.error as error:
-            raise self._error(f"'{pattern}' is not a regular expression: {error}") from error
+            raise self._make_error(f"'{pattern}' is not a regular expression: {error}") from error
         return lambda message: isinstance(text := value(message), str) and regex.fullmatch(text) is not None
 
-    def _value(self) -> _Value:
-        token = self._next()
+    def _parse_operand(self) -> _Value:
+        token = self._next_token()
         if token.kind == "parameter":
             number = int(token.text[1:])
             if number >= len(self._parameters):
-                raise self._error(f"there is no parameter {token.text}")
-            return _constant(_literal(self._parameters[number]))
+                raise self._make_error(f"there is no parameter {token.text}")
+            return _make_constant(_parse_literal(self._parameters[number]))
         if token.kind in ("number", "text") or token.word in ("TRUE", "FALSE"):
-            return _constant(_literal(token.text))
+            return _make_constant(_parse_literal(token.text))
         if token.kind == "name" and not token.word:
-            return self._field(token.text)
-        raise self._error(f"a field or value is missing before '{token.text or 'its end'}'")
+            return self._parse_field(token.text)
+        raise self._make_error(f"a field or value is missing before '{token.text or 'its end'}'")
 
-    def _field(self, path: str) -> _Value:
+    def _parse_field(self, path: str) -> _Value:
         steps: list[str | int] = [int(index) if index else name for name, index in _PATH_STEP.findall(path)]
         try:
-            _field_value(self._class(), steps)
+            _read_field(self._class(), steps)
         except AttributeError:
-            raise self._error(
+            raise self._make_error(
                 phrase("{type_name} has no field '{name}'", type_name=self._class.TYPE_NAME, name=path)
             ) from None
         except (IndexError, TypeError):
             pass  # An array element: a received message may have a longer sequence.
-        return lambda message: _field_value(message, steps)
+        return lambda message: _read_field(message, steps)
 
 
-def _field_value(message: Any, steps: Sequence[str | int]) -> Any:
+def _read_field(message: Any, steps: Sequence[str | int]) -> Any:
     value = message
     for step in steps:
         value = value[step] if isinstance(step, int) else getattr(value, step)
     return value[0] if isinstance(value, bytes) and len(value) == 1 else value
 
 
-def _comparison(get_left: _Value, relation: Callable[[Any, Any], Any], get_right: _Value) -> Condition:
+def _make_comparison(get_left: _Value, relation: Callable[[Any, Any], Any], get_right: _Value) -> Condition:
     def holds(message: Any) -> bool:
         try:
             left_value, right_value = get_left(message), get_right(message)
@@ -248,11 +248,11 @@ def _comparison(get_left: _Value, relation: Callable[[Any, Any], Any], get_right
     return holds
 
 
-def _constant(value: Any) -> _Value:
+def _make_constant(value: Any) -> _Value:
     return lambda _message: value
 
 
-def _literal(text: str) -> Any:
+def _parse_literal(text: str) -> Any:
     """Return the value of a literal: an int, float or bool, or a string with or without quotes."""
     text = text.strip()
     if len(text) > 1 and text[0] in "'`" and text[-1] == "'":

@@ -51,11 +51,11 @@ class RequestId(NamedTuple):
 
     Attributes:
         client_gid: the GID of the client, 16 bytes.
-        number: the request's sequence number, counted by the client from 1.
+        sequence_number: the request's sequence number, counted by the client from 1.
     """
 
     client_gid: bytes
-    number: int
+    sequence_number: int
 
 
 NO_REQUEST_ID = RequestId(bytes(16), 0)
@@ -89,7 +89,7 @@ class ServiceEvents:
             event_type=int(event_type),
             stamp=self.clock.now().to_msg(),
             client_gid=list(request_id.client_gid),
-            sequence_number=request_id.number,
+            sequence_number=request_id.sequence_number,
         )
         event = self._event_class(info=info)
         if self.contents:
@@ -277,13 +277,13 @@ def deep_copy(message: M) -> M:
 class RemoteService(Protocol):
     """A service server in another process, as seen by a client."""
 
-    def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
+    def send(self, request: Any, on_response: Callable[[Any], None], sequence_number: int) -> Callable[[], None]:
         """Send a request.
 
         Args:
             request: the request.
             on_response: called with the response, from any thread, at most once.
-            number: the request's sequence number, unique within the client.
+            sequence_number: the request's sequence number, unique within the client.
 
         Returns:
             A function that cancels the request.
@@ -319,7 +319,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self.remote_service: RemoteService | None = None
         """The server in another process, or None while there is none. See `set_remote_service`."""
         self._server: Service[Request, Response] | None = None
-        self._numbers = itertools.count(1)
+        self._sequence_numbers = itertools.count(1)
         self._lock = threading.RLock()
         self._unsent: deque[tuple[Future[Response], Request]] = deque(maxlen=qos_profile.queue_length)
         self._pending: dict[Future[Response], Callable[[], None]] = {}
@@ -478,14 +478,14 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         server, remote_service = self._server, self.remote_service
         if server is None and remote_service is None:
             return False
-        request_id = RequestId(self.gid, next(self._numbers))
+        request_id = RequestId(self.gid, next(self._sequence_numbers))
         on_response = partial(self._receive, future, request_id)
         if self.service_events is not None:
             self.service_events.publish_event(EventType.REQUEST_SENT, request_id, request=request)
         if server is not None:
             server.receive(request, on_response, request_id)
         elif remote_service is not None:
-            cancel = remote_service.send(request, on_response, request_id.number)
+            cancel = remote_service.send(request, on_response, request_id.sequence_number)
             if future in self._pending:
                 self._pending[future] = cancel
         return True

@@ -27,7 +27,7 @@ _TOKEN = re.compile(r"\{(\w+)\}")
 _ESCAPES = {"a": "\a", "b": "\b", "n": "\n", "r": "\r", "t": "\t", "x1b": "\x1b"}
 _ESCAPE = re.compile(r"\\(x1b|[abnrt])")
 
-Part = Callable[["LogRecord"], str]
+_Formatter = Callable[["LogRecord"], str]
 
 
 def console_line(record: LogRecord) -> str:
@@ -42,13 +42,13 @@ def console_line(record: LogRecord) -> str:
 
 
 @lru_cache(maxsize=8)
-def _formatters(format_text: str) -> tuple[Part, ...]:
+def _formatters(format_text: str) -> tuple[_Formatter, ...]:
     """Return a function for each literal text and each known token of a format.
 
     Unknown tokens are left unchanged.
     """
     text = _ESCAPE.sub(lambda match: _ESCAPES[match[1]], format_text[:_MAX_FORMAT_LENGTH])
-    formatters: list[Part] = []
+    formatters: list[_Formatter] = []
     end = 0
     for match in _TOKEN.finditer(text):
         token = _TOKENS.get(match[1])
@@ -59,31 +59,31 @@ def _formatters(format_text: str) -> tuple[Part, ...]:
     return tuple(formatters)
 
 
-def _literal(text: str) -> Part:
+def _literal(text: str) -> _Formatter:
     return lambda _: text
 
 
-def _seconds(record: LogRecord) -> str:
+def _format_seconds(record: LogRecord) -> str:
     seconds, nanoseconds = divmod(record.stamp_ns, NANOSECONDS_PER_SECOND)
     return f"{seconds}.{nanoseconds:09d}"
 
 
-def _date_time(record: LogRecord) -> str:
+def _format_date_time(record: LogRecord) -> str:
     seconds, nanoseconds = divmod(record.stamp_ns, NANOSECONDS_PER_SECOND)
-    moment = datetime.fromtimestamp(seconds).astimezone()
-    return f"{moment:%Y-%m-%d %H:%M:%S}.{nanoseconds // 1_000_000:03d}"
+    local_time = datetime.fromtimestamp(seconds).astimezone()
+    return f"{local_time:%Y-%m-%d %H:%M:%S}.{nanoseconds // 1_000_000:03d}"
 
 
-_TOKENS: dict[str, Part] = {
+_TOKENS: dict[str, _Formatter] = {
     "severity": lambda record: record.level.name,
     "name": lambda record: record.node,
     "message": lambda record: record.text,
     "function_name": lambda record: record.function,
     "file_name": lambda record: record.file,
     "short_file_name": lambda record: PurePath(record.file).name,
-    "time": _seconds,
+    "time": _format_seconds,
     "time_as_nanoseconds": lambda record: str(record.stamp_ns),
-    "date_time_with_ms": _date_time,
+    "date_time_with_ms": _format_date_time,
     "line_number": lambda record: str(record.line),
     "thread_id": lambda _: str(threading.get_native_id()),
 }

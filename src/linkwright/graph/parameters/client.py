@@ -110,11 +110,11 @@ class AsyncParameterClient:
 
         Each is a `Parameter` or an rcl_interfaces/msg/Parameter.
         """
-        return self._send_request("set_parameters", callback, parameters=_messages(parameters))
+        return self._send_request("set_parameters", callback, parameters=_convert_parameters(parameters))
 
     def set_parameters_atomically(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
         """Set either all of the given parameters or none."""
-        return self._send_request("set_parameters_atomically", callback, parameters=_messages(parameters))
+        return self._send_request("set_parameters_atomically", callback, parameters=_convert_parameters(parameters))
 
     def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
         """Undeclare parameters whose descriptors allow dynamic typing."""
@@ -137,7 +137,7 @@ class AsyncParameterClient:
         self, callback: Callable[..., Any], qos_profile: QoSProfile = PARAMETER_EVENTS_QOS, **options: Any
     ) -> Any:
         """Subscribe to changes to the parameters of all nodes."""
-        event_type = _message_type("ParameterEvent")
+        event_type = _get_message_type("ParameterEvent")
         return self.node.create_subscription(event_type, "/parameter_events", callback, qos_profile, **options)
 
     def _send_request(self, service: str, callback: Done | None, **fields: Any) -> Future[Any]:
@@ -186,11 +186,11 @@ def parameter_dict_from_yaml_file(
     }
 
 
-def _messages(parameters: Sequence[Any]) -> list[Any]:
+def _convert_parameters(parameters: Sequence[Any]) -> list[Any]:
     return [parameter.to_parameter_msg() if isinstance(parameter, Parameter) else parameter for parameter in parameters]
 
 
-def _message_type(name: str) -> Any:
+def _get_message_type(name: str) -> Any:
     from linkwright.messages import get_message
 
     return get_message(f"rcl_interfaces/msg/{name}")

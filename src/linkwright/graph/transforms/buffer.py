@@ -271,10 +271,10 @@ class TransformBuffer:
 
     def _make_plan(self, batch: TransformBatch) -> _Plan:
         batch_rows, rows, parents = [], [], []
-        for number, (parent, child) in enumerate(zip(batch.parents, batch.children, strict=True)):
+        for index, (parent, child) in enumerate(zip(batch.parents, batch.children, strict=True)):
             parent, child = parent.removeprefix("/"), child.removeprefix("/")
             if self._has_usable_names(parent, child):
-                batch_rows.append(number)
+                batch_rows.append(index)
                 parents.append(self._rows.setdefault(parent, len(self._rows)))
                 rows.append(self._rows.setdefault(child, len(self._rows)))
         new_count = len(self._rows) - len(self._parents)

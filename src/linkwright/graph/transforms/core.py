@@ -34,6 +34,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 DEFAULT_CACHE_TIME = Duration(seconds=10)
 _QUATERNION_TOLERANCE = 10e-3
+"""The maximum deviation of a quaternion's squared length from 1."""
 _OLD_DATA_PERIOD_S = 2.0
 """The minimum time between two warnings about old data, in seconds.
 
@@ -354,14 +355,14 @@ class BufferCore:
             plan = self._plans[key] = entries
         return plan
 
-    def _cache(self, number: int, static: bool) -> FrameCache:
+    def _cache(self, frame_index: int, static: bool) -> FrameCache:
         """Return the cache of a frame.
 
         A frame that changes between static and moving gets a new cache.
         """
-        cache = self._caches[number]
+        cache = self._caches[frame_index]
         if cache is None or isinstance(cache, StaticCache) is not static:
-            cache = self._caches[number] = StaticCache() if static else MovingCache(self._span_ns)
+            cache = self._caches[frame_index] = StaticCache() if static else MovingCache(self._span_ns)
             self._plans.clear()
         return cache
 
@@ -410,7 +411,7 @@ class BufferCore:
 
     def _frame_facts(self, *, with_empty: bool = False) -> list[FrameFacts]:
         frames = []
-        for number, cache in enumerate(self._caches):
+        for index, cache in enumerate(self._caches):
             if cache is None:
                 continue
             latest = cache.latest()
@@ -419,9 +420,9 @@ class BufferCore:
             stamp_ns, parent = latest or (0, 0)
             frames.append(
                 FrameFacts(
-                    self._names[number],
+                    self._names[index],
                     self._names[parent],
-                    self._authorities.get(number, "no recorded authority"),
+                    self._authorities.get(index, "no recorded authority"),
                     len(cache),
                     stamp_ns,
                     cache.oldest_ns(),

@@ -113,7 +113,7 @@ class ProcessTable:
             try:
                 await process.run()
             except LinkwrightError as error:
-                self._session.could_not_start(process, error)
+                self._session.report_start_failure(process, error)
                 return
             finally:
                 self._running.discard(process)

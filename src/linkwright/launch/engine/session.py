@@ -18,7 +18,7 @@ from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.errors.locations import with_location
-from linkwright.launch.errors.user_code import DEEPEST, endless_nesting_error, explain
+from linkwright.launch.errors.user_code import MAX_NESTING_DEPTH, endless_nesting_error, explain
 from linkwright.launch.log.loggers import launch_config
 from linkwright.launch.model import events
 from linkwright.launch.model.context import LaunchContext
@@ -154,7 +154,7 @@ class LaunchSession:
             self._is_visiting = False
             self._omissions.report()
 
-    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
+    def report_start_failure(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started.
 
         The launch continues without it.
@@ -198,7 +198,7 @@ class LaunchSession:
         """Report findings about a robot description in the log and the viewer."""
         self.reload.report(description, findings)
 
-    def number_process(self, base_name: str) -> str:
+    def assign_process_name(self, base_name: str) -> str:
         """Return the name of a process in the log: its base name with the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 
@@ -301,7 +301,7 @@ class LaunchSession:
     # --- visits ---------------------------------------------------------------------------------------------
 
     def _visit(self, entity: LaunchDescriptionEntity, context: LaunchContext, depth: int = 1) -> None:
-        if depth > DEEPEST:
+        if depth > MAX_NESTING_DEPTH:
             raise endless_nesting_error(entity.source_location)
         try:
             next_entities = entity.visit(context)
@@ -319,7 +319,7 @@ class LaunchSession:
             raise explained_error from error
         future = entity.get_asyncio_future()
         if future is not None:
-            self.hold(future)
+            self.keep_running_until(future)
         try:
             for next_entity in next_entities or ():
                 self._visit(next_entity, context, depth + 1)
@@ -416,7 +416,7 @@ class LaunchSession:
         if waits_for_fix and not self.host.has_viewer and not self.is_ending:
             self.shut_down("the robot description has errors, and there is no viewer that waits for a fix")
 
-    def hold(self, future: asyncio.Future[Any]) -> None:
+    def keep_running_until(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until a future is done."""
         if future.done() or future in self._held_futures:
             return

@@ -40,7 +40,7 @@ class Supervisor(RunningLaunch, Protocol):
     def would_handle(self, event: Event) -> bool:
         """Return whether any handler accepts an event."""
 
-    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
+    def report_start_failure(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started.
 
         The launch continues without it.

@@ -31,7 +31,7 @@ from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.locations import CodeLocation, SourceLocation, error_at, read_source, with_location
 from linkwright.packages.programs.code_files import is_user_file
 
-DEEPEST = 300
+MAX_NESTING_DEPTH = 300
 """The maximum nesting depth of launch actions.
 
 Includes, groups, and functions that return actions increase the depth.
@@ -87,7 +87,9 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
 
 def endless_nesting_error(location: SourceLocation | None) -> LinkwrightError:
     """Return the error for launch actions that are nested more deeply than the limit."""
-    message = phrase("launch actions are nested more than {count} levels deep, probably without end", count=DEEPEST)
+    message = phrase(
+        "launch actions are nested more than {count} levels deep, probably without end", count=MAX_NESTING_DEPTH
+    )
     hint = phrase(
         "add a condition that ends the recursion, if a launch file includes itself or a function returns itself"
     )

@@ -27,7 +27,7 @@ class Entity(MarkupEntity):
 
     def __init__(self, xml_element: Any, *, parent: AnyEntity | None = None) -> None:
         self._element = xml_element if isinstance(xml_element, Element) else _from_etree(xml_element)
-        super().__init__(self._element.tag, _location(self._element), parent)
+        super().__init__(self._element.tag, _locate_element(self._element), parent)
 
     @property
     def children(self) -> list[AnyEntity]:
@@ -66,7 +66,7 @@ class Entity(MarkupEntity):
             if optional:
                 return None
             self._missing(name, attributes, ros_error)
-        value: Any = LocatedText(attributes[name], _attribute_location(self._element, name))
+        value: Any = LocatedText(attributes[name], _locate_attribute(self._element, name))
         if name + _SEPARATOR in attributes:
             self._read_names[name + _SEPARATOR] = None
             value = [LocatedText(item, value.source_location) for item in value.split(attributes[name + _SEPARATOR])]
@@ -83,11 +83,11 @@ class Entity(MarkupEntity):
         element, source = self._element, self._element.source
         if name not in element.attributes:
             child = element.first(name)
-            return self.source_location if child is None else _location(child)
+            return self.source_location if child is None else _locate_element(child)
         if source is None:
             return None
         if name in self._read_names:
-            return _attribute_location(element, name)
+            return _locate_attribute(element, name)
         name_range = attribute_name_range(source.text, element.offset, name)
         return MarkupLocation(source, *name_range) if name_range else self.source_location
 
@@ -111,17 +111,17 @@ class Parser(AnyParser):
         return {"launch.xml"}
 
 
-def _location(element: Element) -> SourceLocation | None:
+def _locate_element(element: Element) -> SourceLocation | None:
     if element.source is None:
         return None
     return MarkupLocation(element.source, element.offset, element.offset + 1 + len(element.tag))
 
 
-def _attribute_location(element: Element, name: str) -> SourceLocation | None:
+def _locate_attribute(element: Element, name: str) -> SourceLocation | None:
     if element.source is None:
         return None
     value_range = attribute_value_range(element.source.text, element.offset, name)
-    return MarkupLocation(element.source, *value_range) if value_range else _location(element)
+    return MarkupLocation(element.source, *value_range) if value_range else _locate_element(element)
 
 
 def _from_etree(element: Any) -> Element:

@@ -337,7 +337,7 @@ class LaunchContext:
     def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
         """Delay the end of the launch until a future is done."""
         if self._session is not None:
-            self._session.hold(completion_future)
+            self._session.keep_running_until(completion_future)
 
     def register_event_handler(self, event_handler: Handler, append: bool = False) -> None:
         """Register a handler for future events.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from linkwright.launch.errors.user_code import DEEPEST, endless_nesting_error
+from linkwright.launch.errors.user_code import MAX_NESTING_DEPTH, endless_nesting_error
 from linkwright.launch.model.actions import EmitEvent, Log, RegisterEventHandler
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.entity import LaunchDescriptionEntity
@@ -28,7 +28,7 @@ def format_launch_description(description: LaunchDescription) -> str:
 
 def _tree_lines(entities: Iterable[Any], depth: int = 1) -> list[str]:
     entity_list = list(entities)
-    if depth > DEEPEST and entity_list:
+    if depth > MAX_NESTING_DEPTH and entity_list:
         raise endless_nesting_error(getattr(entity_list[0], "source_location", None))
     lines: list[str] = []
     for index, entity in enumerate(entity_list):

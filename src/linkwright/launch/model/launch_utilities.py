@@ -73,13 +73,13 @@ def get_loop() -> asyncio.AbstractEventLoop:
         return asyncio.get_running_loop()
     except RuntimeError:
         pass
-    if not _loops or _loops[-1].is_closed():
-        _loops[:] = [asyncio.new_event_loop()]
-    return _loops[-1]
+    if not _fallback_loops or _fallback_loops[-1].is_closed():
+        _fallback_loops[:] = [asyncio.new_event_loop()]
+    return _fallback_loops[-1]
 
 
-_loops: list[asyncio.AbstractEventLoop] = []
-"""The event loop that `get_loop` created last, or empty."""
+_fallback_loops: list[asyncio.AbstractEventLoop] = []
+"""The event loop that `get_loop` created last, in a list of at most one."""
 
 
 def visit_all_entities_and_collect_futures(

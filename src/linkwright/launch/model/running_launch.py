@@ -43,7 +43,7 @@ class NodeHosting(Protocol):
     def launcher_node(self) -> Node:
         """The launcher's own node for services and topics, created on first use."""
 
-    def plan(self, plan: HostedPlan) -> None:
+    def schedule_node(self, plan: HostedPlan) -> None:
         """Schedule the start of the node that a plan describes.
 
         This method has no effect while the launch is ending.
@@ -95,7 +95,7 @@ class RunningLaunch(Protocol):
         The folder is deleted after the launch.
         """
 
-    def number_process(self, base_name: str) -> str:
+    def assign_process_name(self, base_name: str) -> str:
         """Return the name of a process in the log: its base name with the next number."""
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
@@ -115,7 +115,7 @@ class RunningLaunch(Protocol):
         Return a function that cancels both.
         """
 
-    def hold(self, future: asyncio.Future[Any]) -> None:
+    def keep_running_until(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until a future is done."""
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
@@ -124,7 +124,7 @@ class RunningLaunch(Protocol):
         The launch does not become idle until the coroutine has finished.
         """
 
-    def could_not_start(self, subject: object, error: LinkwrightError) -> None:
+    def report_start_failure(self, subject: object, error: LinkwrightError) -> None:
         """Report why a process or node could not be started.
 
         The launch continues without it.

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.errors.locations import Located, with_location
 from linkwright.launch.model.action import parse_condition
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.markup.entity import parse_texts
+from linkwright.launch.model.markup.entity import parse_attributes
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -83,7 +83,7 @@ class ComposableNode(Located):
             "package": parser.parse_substitution(entity.get_attr("pkg")),
             "plugin": parser.parse_substitution(entity.get_attr("plugin")),
             **parse_condition(entity, parser),
-            **parse_texts(entity, parser, name="name", namespace="namespace"),
+            **parse_attributes(entity, parser, name="name", namespace="namespace"),
             **parse_remappings(entity, parser),
         }
         parameters = entity.get_attr("param", data_type=Entities, optional=True)
@@ -198,9 +198,9 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
         scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
         node_parameters = own_parameters(description.parameters or (), context)
         parameters = NodeParameters([*scope.sources, *node_parameters.sources])
-        request.parameters = _parameter_messages(context, full_name, parameters.sources)
+        request.parameters = _make_parameter_messages(context, full_name, parameters.sources)
         parameters.check(context, full_name if request.node_name else None, description.source_location)
-        request.extra_arguments = _parameter_messages(
+        request.extra_arguments = _make_parameter_messages(
             context, full_name, own_parameters(description.extra_arguments or (), context).sources
         )
     except LinkwrightError as error:
@@ -217,14 +217,14 @@ def to_parameters_list(
     """
     full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
     full_name = full_name if full_name.startswith("/") else f"/{full_name}"
-    return _parameters(context, full_name, own_parameters(tuple(evaluated_parameters), context).sources)
+    return _read_parameters(context, full_name, own_parameters(tuple(evaluated_parameters), context).sources)
 
 
-def _parameter_messages(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
-    return [parameter.to_parameter_msg() for parameter in _parameters(context, full_name, sources)]
+def _make_parameter_messages(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
+    return [parameter.to_parameter_msg() for parameter in _read_parameters(context, full_name, sources)]
 
 
-def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
+def _read_parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
     from linkwright.graph import Parameter
 
     parameters: list[Any] = []

@@ -130,7 +130,7 @@ class LoadComposableNodes(Action):
             if _is_third_party(context.session.finder, request.package_name, request.plugin_name):
                 mark_unavailable(error)
                 record_skipped_node(context, request.node_name)
-            context.session.could_not_start(description, error)
+            context.session.report_start_failure(description, error)
             return
         warning = record_node_start(context, name)
         if warning is not None:

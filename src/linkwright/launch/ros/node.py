@@ -368,7 +368,7 @@ class Node(ExecuteProcess):
             self.__node_parameters.check(context, full_name, self.source_location)
         plan = HostedPlan(
             self,
-            session.number_process(base_name),
+            session.assign_process_name(base_name),
             package,
             executable,
             name,
@@ -384,7 +384,7 @@ class Node(ExecuteProcess):
         )
         self.process_description.final_name = plan.process_name
         self.process_description.final_cmd = plan.details["cmd"]
-        session.host.plan(plan)
+        session.host.schedule_node(plan)
         return plan.process_name
 
     # --- in a separate process --------------------------------------------------------------------------------

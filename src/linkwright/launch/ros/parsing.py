@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.launch.errors.locations import error_at, reading_markup_at
-from linkwright.launch.model.markup.entity import Entity, parse_texts
+from linkwright.launch.model.markup.entity import Entity, parse_attributes
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_values import ParameterValue
 
@@ -30,7 +30,9 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
         if command_line is not None:
             kwargs[keyword] = cls._parse_cmdline(command_line, parser)
     kwargs.pop("name", None)  # the base class has read the process's name from the same attribute
-    kwargs.update(parse_texts(entity, parser, name="name", exec_name="exec_name", package="pkg", namespace="namespace"))
+    kwargs.update(
+        parse_attributes(entity, parser, name="name", exec_name="exec_name", package="pkg", namespace="namespace")
+    )
     kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
     kwargs.update(parse_remappings(entity, parser))
     parameters = entity.get_attr("param", data_type=Entities, optional=True)

@@ -46,5 +46,5 @@ def simulate_completed(path: Path, finder: PackageFinder) -> Iterator[SteppedSim
     with ScratchFolder("driven") as folder:
         completed = Path(folder) / f"{path.stem}.urdf"
         completed.write_text(write(complete_description(description.document, inference)), encoding="utf-8")
-        with SteppedSimulation("empty", completed, pose=(0.0, 0.0, -inference.ground, 0.0, 0.0, 0.0)) as test:
+        with SteppedSimulation("empty", completed, pose=(0.0, 0.0, -inference.ground_z, 0.0, 0.0, 0.0)) as test:
             yield test

@@ -232,7 +232,7 @@ class LaunchCheck:
         from linkwright.messages import get_message
 
         node = self._checker
-        self._wait_until(lambda: node.count_publishers(topic) > 0, lambda: self._missing_topic(topic))
+        self._wait_until(lambda: node.count_publishers(topic) > 0, lambda: self._explain_missing_topic(topic))
         received: list[Any] = []
 
         def subscribe() -> None:
@@ -370,7 +370,7 @@ class LaunchCheck:
             self._run.result()
         except LinkwrightError as error:
             return self._located(error.diagnostics[0])
-        if problem := self._problem():
+        if problem := self._find_first_problem():
             return problem
         return phrase(
             "the launch of '{file}' ended by itself: it starts no node that keeps running; are the nodes in the list "
@@ -385,20 +385,20 @@ class LaunchCheck:
 
     def problems(self) -> list[LocalText]:
         """Return the problems that the launch has reported: its findings, then the errors of its nodes."""
-        return [LocalText.from_phrase(problem) for problem in self._problems()]
+        return [LocalText.from_phrase(problem) for problem in self._list_problems()]
 
-    def _problems(self) -> list[Phrase]:
+    def _list_problems(self) -> list[Phrase]:
         errors = [phrase("{file}: {message}", file=self._file, message=error) for error in self._errors()]
         return [*map(self._located, self._findings), *errors]
 
-    def _problem(self) -> Phrase | None:
+    def _find_first_problem(self) -> Phrase | None:
         """Return the first problem that the launch has reported, or None."""
-        return next(iter(self._problems()), None)
+        return next(iter(self._list_problems()), None)
 
-    def _missing_topic(self, topic: str) -> Phrase:
+    def _explain_missing_topic(self, topic: str) -> Phrase:
         """Return the message for a topic without publishers, with the first error of the launch."""
         topics = self._topics()
-        if problem := self._problem():
+        if problem := self._find_first_problem():
             return phrase("no node publishes '{topic}'; the launch says: {message}", topic=topic, message=problem)
         published = [name for name in topics if self._call(partial(self._checker.count_publishers, name))]
         name = topic.rpartition("/")[2]
@@ -418,7 +418,7 @@ class LaunchCheck:
         nodes = self.nodes()
         if similar := nearest(name, nodes, 1):
             return phrase("there is no node '{name}'; there is '{similar}'", name=name, similar=similar[0])
-        if problem := self._problem():
+        if problem := self._find_first_problem():
             return phrase("there is no node '{name}'; the launch says: {message}", name=name, message=problem)
         others = quoted_names(sorted(nodes)) or "-"
         return phrase("there is no node '{name}'; the running nodes are {nodes}", name=name, nodes=others)

@@ -20,15 +20,15 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
         name: the path in the folder.
         workspace: the workspace, which may have the file in another folder.
     """
-    matches = _same_named_files(folder, name)
-    if not matches and (matches_in_workspace := _same_named_files(workspace, name)):
+    matches = _find_same_named_files(folder, name)
+    if not matches and (matches_in_workspace := _find_same_named_files(workspace, name)):
         return phrase(
             "'{folder}' has no file '{name}'; the workspace has {others}",
             folder=folder.name,
             name=name,
             others=quoted_names(matches_in_workspace),
         )
-    matches = matches or _similar_files(folder, name)
+    matches = matches or _find_similar_files(folder, name)
     if matches:
         return phrase(
             "'{folder}' has no file '{name}'; it has {others}",
@@ -36,7 +36,7 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
             name=name,
             others=quoted_names(matches),
         )
-    matches_in_workspace = _similar_files(workspace, Path(name).name)
+    matches_in_workspace = _find_similar_files(workspace, Path(name).name)
     if matches_in_workspace:
         return phrase(
             "'{folder}' has no file '{name}'; the workspace has {others}",
@@ -47,15 +47,15 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
     return phrase("'{folder}' has no file '{name}'", folder=folder.name, name=name)
 
 
-def _same_named_files(folder: Path, name: str) -> list[str]:
+def _find_same_named_files(folder: Path, name: str) -> list[str]:
     """Return the files of a folder whose names differ only in case and punctuation from a name."""
-    names = [file.relative_to(folder).as_posix() for file in _files(folder)]
+    names = [file.relative_to(folder).as_posix() for file in _walk_files(folder)]
     return [other for other in names if _key(Path(other).name) == _key(Path(name).name)][:_MAX_FILES]
 
 
-def _similar_files(folder: Path, name: str) -> list[str]:
+def _find_similar_files(folder: Path, name: str) -> list[str]:
     """Return the files of a folder whose names resemble a name."""
-    names = [file.relative_to(folder).as_posix() for file in _files(folder)]
+    names = [file.relative_to(folder).as_posix() for file in _walk_files(folder)]
     stem = _stem(name)
     related = [other for other in names if _stem(other) == stem]
     suffix = Path(name).suffix
@@ -73,7 +73,7 @@ def _stem(name: str) -> str:
     return _key(Path(name).name.partition(".")[0])
 
 
-def _files(folder: Path) -> Iterator[Path]:
+def _walk_files(folder: Path) -> Iterator[Path]:
     for path in sorted(folder.rglob("*")):
         parts = path.relative_to(folder).parts
         if path.is_file() and not any(part in _SKIPPED_FOLDERS or part.startswith(".") for part in parts):

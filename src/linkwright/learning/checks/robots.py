@@ -30,6 +30,7 @@ _ANGLE_TOLERANCE = 0.02
 """The difference between directions that checks accept, in rad: 1.57 instead of pi/2 passes."""
 
 _COLOR_TOLERANCE = 0.15
+"""The maximum difference of red, green or blue, from 0 to 1, for equal colors."""
 
 _DEFAULT_AXIS = (1.0, 0.0, 0.0)
 _MAX_NAMES = 8

@@ -54,7 +54,7 @@ def grades_page(course: Course, students: Sequence[StudentMarks], preferred: str
         _overview(students),
         f"<h2>{_translated(phrase('Students'))}</h2>",
         *(_student(index, student, titles) for index, student in enumerate(students)),
-        _steps(students, titles),
+        _format_steps(students, titles),
         _protections(students),
         "</main>",
     ]
@@ -93,7 +93,7 @@ def _overview(students: Sequence[StudentMarks]) -> str:
     )
 
 
-def _steps(students: Sequence[StudentMarks], titles: Mapping[str, LocalText]) -> str:
+def _format_steps(students: Sequence[StudentMarks], titles: Mapping[str, LocalText]) -> str:
     """Return a table with the share of students that passed each step."""
     graded = [student for student in students if student.marks]
     rows = []
@@ -111,7 +111,7 @@ def _step_name(step: str, titles: Mapping[str, LocalText]) -> str:
 def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText]) -> str:
     """Return the section of a student, whose link target is inside ``details``, so that a link opens it."""
     notes = "".join(f"<p class='soft'>{_texts(note)}</p>" for note in student.submission.notes)
-    rows = [_step(student, step, mark, titles) for step, mark in student.marks.items()]
+    rows = [_format_step(student, step, mark, titles) for step, mark in student.marks.items()]
     headings = [
         phrase("Step"),
         phrase("Passed"),
@@ -125,7 +125,7 @@ def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText])
     return f'<details>{summary}<div id="student-{index}">{notes}{table}</div></details>'
 
 
-def _step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, LocalText]) -> list[str]:
+def _format_step(student: StudentMarks, step: str, mark: Mark, titles: Mapping[str, LocalText]) -> list[str]:
     claims = student.submission.progress.step(step)
     help_texts = [_translated(counted("{count} hint", "{count} hints", claims.hints))] if claims.hints else []
     help_texts += [_translated(phrase("solution used"))] if claims.solution else []

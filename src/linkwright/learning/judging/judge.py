@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from linkwright.simulation.simulation import Simulation
 
 _MAX_UNSOLVED_POINTS = 40.0
+"""The maximum number of points, of 100, for an exercise that is not solved."""
 _COLLISION_PAUSE_S = 1.0
 """The time without a contact after which the next contact is another collision."""
 
@@ -182,6 +183,6 @@ class Judge:
         revision, names = self._geom_models
         if revision != self.simulation.revision:
             model = self.simulation.model
-            names = [model.geom(number).name.partition(SEPARATOR)[0] for number in range(model.ngeom)]
+            names = [model.geom(index).name.partition(SEPARATOR)[0] for index in range(model.ngeom)]
             self._geom_models = (self.simulation.revision, names)
         return names

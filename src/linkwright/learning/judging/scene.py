@@ -154,12 +154,12 @@ class Scene:
     def add_line(self, name: str, points: Sequence[Sequence[float]], width: float, color: Color = BLACK) -> None:
         """Add a flat line through points x, y on the ground, a loop if the last point equals the first."""
         pieces = []
-        for number, (first, second) in enumerate(pairwise(points)):
+        for index, (first, second) in enumerate(pairwise(points)):
             length = hypot(second[0] - first[0], second[1] - first[1]) + 0.6 * width
             pose = ((first[0] + second[0]) / 2, (first[1] + second[1]) / 2, 0.002)
             yaw = atan2(second[1] - first[1], second[0] - first[0])
             pieces.append(
-                f'<visual name="piece_{number}"><pose>{_join(pose)} 0 0 {yaw:.5f}</pose>'
+                f'<visual name="piece_{index}"><pose>{_join(pose)} 0 0 {yaw:.5f}</pose>'
                 f"<geometry><box><size>{length:.4f} {width:.4f} 0.002</size></box></geometry>"
                 f"{_material(color)}</visual>"
             )

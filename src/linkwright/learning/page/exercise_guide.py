@@ -24,6 +24,7 @@ from linkwright.page.protocol import learning as messages
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 
 _PASS_SCORE = 50.0
+"""The minimum score, of 100 points, with which a run passes."""
 _NO_STATE = phrase("the world has not sent the state of the judge yet")
 
 

@@ -16,8 +16,8 @@ from linkwright.learning.sandbox.processes import ProcessUsage, descendants, nam
 from linkwright.process.patience import PatientClock
 
 _INTERVAL_SECONDS = 0.04
-_SHARE_OF_TIME = 0.1
-"""The part of the time that may pass with walks over the folder."""
+_TIME_FRACTION = 0.1
+"""The fraction of the time that may pass with walks over the folder."""
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ class Watchdog:
             return None
         usage = measure_folder(self._folder)
         now = time.monotonic()
-        self._next_walk = now + (now - start) / _SHARE_OF_TIME
+        self._next_walk = now + (now - start) / _TIME_FRACTION
         if usage.largest >= self._limits.file_bytes > self._before.largest:
             return Exceeded.FILE_BYTES
         if usage.bytes - self._before.bytes > self._limits.disk_bytes:

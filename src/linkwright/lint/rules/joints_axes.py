@@ -18,6 +18,7 @@ _TILT_TOLERANCE = 1e-6
 """The tilt in rad below which an axis is not reported, because it is only rounded: a micrometer per meter."""
 _MOVING_TYPES = ("revolute", "continuous", "prismatic", "planar")
 _LENGTH_TOLERANCE = 1e-3
+"""The maximum deviation of an axis' length from 1."""
 
 
 class AxisZero(Rule):

@@ -113,7 +113,7 @@ class LaunchFunctionMissing(LaunchRule):
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
         """Yield a finding if a launch file does not define ``generate_launch_description``."""
-        if file.python is None or file.has_function or file.is_test:
+        if file.python_file is None or file.has_function or file.is_test:
             return
         if Path(file.source.name).with_name("__init__.py").is_file():
             return

@@ -66,20 +66,24 @@ class CommandWithoutBlank(LaunchRule):
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
         """Yield a finding for each ``Command`` without a space between the program and its argument."""
-        python = file.python
-        if python is None:
+        python_file = file.python_file
+        if python_file is None:
             return
-        for call in python.calls("Command"):
-            arguments = python.resolved(call.args[0]) if call.args else argument_of(call, "command")
+        for call in python_file.calls("Command"):
+            arguments = python_file.resolved(call.args[0]) if call.args else argument_of(call, "command")
             if not isinstance(arguments, (ast.List, ast.Tuple)) or len(arguments.elts) < 2:
                 continue
             program, argument = arguments.elts[0], arguments.elts[1]
-            if not _is_program(program, python) or _begins_with_blank(argument, python):
+            if not _is_program(program, python_file) or _begins_with_blank(argument, python_file):
                 continue
             message = phrase("there is no space between the program and its argument")
             hint = phrase("Command joins its parts without spaces: write 'xacro ' with a space at the end")
             yield self.report(
-                message, span=python.span(program), source=file.source, hint=hint, fix=_blank_fix(program, python)
+                message,
+                span=python_file.span(program),
+                source=file.source,
+                hint=hint,
+                fix=_blank_fix(program, python_file),
             )
 
 
@@ -117,7 +121,7 @@ class DescriptionNotTyped(Rule):
         if package is None:
             return
         for file in package.launch_files.values():
-            descriptions = [] if file.python is None else list(_untyped_descriptions(file.python))
+            descriptions = [] if file.python_file is None else list(_untyped_descriptions(file.python_file))
             invalid_description = _first_invalid_yaml_description(file, package, subject) if descriptions else None
             if invalid_description is None:
                 continue
@@ -159,26 +163,26 @@ class LaunchArgumentUndeclared(LaunchRule):
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
         """Yield a finding for each misspelled launch configuration in a launch file."""
-        python = file.python
-        if python is None:
+        python_file = file.python_file
+        if python_file is None:
             return
         declared_names: set[str] = set()
-        for call in python.calls("DeclareLaunchArgument", "SetLaunchConfiguration"):
+        for call in python_file.calls("DeclareLaunchArgument", "SetLaunchConfiguration"):
             name_argument = call.args[0] if call.args else argument_of(call, "name")
-            name = python.text(name_argument)
+            name = python_file.text(name_argument)
             if name is None:
                 return  # not all declared names are known, so no name can be called undeclared
             declared_names.add(name)
-        for call in python.calls("LaunchConfiguration"):
+        for call in python_file.calls("LaunchConfiguration"):
             if len(call.args) != 1 or call.keywords:
                 continue
-            name = python.text(call.args[0])
+            name = python_file.text(call.args[0])
             if name is None or name in declared_names:
                 continue
             similar_name = next(iter(nearest(name, declared_names, 1)), None)
             if similar_name is not None and _is_typo(name, similar_name):
                 message = phrase("the launch argument '{name}' is not declared", name=name)
-                span = python.span(call.args[0])
+                span = python_file.span(call.args[0])
                 yield self.report(
                     message,
                     span=span,
@@ -290,29 +294,29 @@ class _UntypedDescription(NamedTuple):
     fix: Fix | None
 
 
-def _untyped_descriptions(python: PythonFile) -> Iterator[_UntypedDescription]:
-    for node in ast.walk(python.tree):
+def _untyped_descriptions(python_file: PythonFile) -> Iterator[_UntypedDescription]:
+    for node in ast.walk(python_file.tree):
         if not isinstance(node, ast.Dict):
             continue
         for key, value_node in zip(node.keys, node.values, strict=True):
-            value = python.resolved(value_node)
+            value = python_file.resolved(value_node)
             if not (isinstance(key, ast.Constant) and key.value == "robot_description" and isinstance(value, ast.Call)):
                 continue
             if _is_command(value):
                 hint = phrase(
                     "write ParameterValue(Command(...), value_type=str), from launch_ros.parameter_descriptions"
                 )
-                yield _UntypedDescription(python.span(value), hint, None)
+                yield _UntypedDescription(python_file.span(value), hint, None)
             elif called_name(value).rpartition(".")[2] == "ParameterValue" and len(value.args) == 1:
-                argument = python.resolved(value.args[0])
+                argument = python_file.resolved(value.args[0])
                 if (
                     argument_of(value, "value_type") is None
                     and isinstance(argument, ast.Call)
                     and _is_command(argument)
                 ):
-                    offset = python.range(value.args[0])[1]
-                    fix = Fix((Edit(python.source.name, offset, offset, ", value_type=str"),))
-                    yield _UntypedDescription(python.span(value), phrase("add value_type=str"), fix)
+                    offset = python_file.range(value.args[0])[1]
+                    fix = Fix((Edit(python_file.source.name, offset, offset, ", value_type=str"),))
+                    yield _UntypedDescription(python_file.span(value), phrase("add value_type=str"), fix)
 
 
 def _is_command(call: ast.Call) -> bool:
@@ -356,20 +360,20 @@ def _yaml_problem(text: str) -> str | None:
     return None if isinstance(content, str) else phrase("it is read as {type}", type=type(content).__name__)
 
 
-def _is_program(node: ast.expr, python: PythonFile) -> bool:
+def _is_program(node: ast.expr, python_file: PythonFile) -> bool:
     """Return whether a part of a command is the name of a program without a trailing space."""
-    text = python.text(node)
+    text = python_file.text(node)
     if text is not None:
         return bool(re.search(r"(^|/)(xacro|cat)$", text))
     return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] == "FindExecutable"
 
 
-def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
-    text = python.text(node)
+def _begins_with_blank(node: ast.expr, python_file: PythonFile) -> bool:
+    text = python_file.text(node)
     if text is not None:
         return text[:1].isspace()
     # Only a path or a launch configuration certainly has no leading space.
-    node = python.resolved(node)
+    node = python_file.resolved(node)
     if isinstance(node, ast.Call):
         name = called_name(node).rpartition(".")[2]
         return name not in ("LaunchConfiguration", "PathJoinSubstitution", "str", "join", "FindPackageShare")
@@ -378,13 +382,13 @@ def _begins_with_blank(node: ast.expr, python: PythonFile) -> bool:
     )
 
 
-def _blank_fix(program: ast.expr, python: PythonFile) -> Fix | None:
+def _blank_fix(program: ast.expr, python_file: PythonFile) -> Fix | None:
     """Return the fix that adds a space after a program's name, or None if this is not possible.
 
     The space is added before the closing quote of the name, or as a separate part of the command.
     """
-    start, end = python.range(program)
-    source: SourceText = python.source
+    start, end = python_file.range(program)
+    source: SourceText = python_file.source
     program_text = source.text[start:end]
     if re.fullmatch(r"""(["'])[\w/.-]+\1""", program_text):
         return Fix((Edit(source.name, end - 1, end - 1, " "),))

@@ -20,7 +20,7 @@ _CAMERA_NAME = lazy_pattern(
     "cam|rgb|depth|colou?r|infra|stereo|eye|kinect|realsense|zed|oak|sensor|image", re.IGNORECASE
 )
 _ANGLE_TOLERANCE = radians(2.0)
-_MAX_MARKER_SIZE = 0.05
+_MAX_MARKER_SIZE_M = 0.05
 _HUMANOID_FRAMES = ("base_link", "torso", "l_wrist", "r_wrist", "l_gripper", "r_gripper", "l_sole", "r_sole", "gaze")
 
 
@@ -334,8 +334,8 @@ def _is_tiny(shape: Geometry) -> bool:
     Some simulators require a shape on every link.
     """
     if isinstance(shape, Box):
-        return max(shape.size) <= _MAX_MARKER_SIZE
-    return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _MAX_MARKER_SIZE
+        return max(shape.size) <= _MAX_MARKER_SIZE_M
+    return not isinstance(shape, Mesh) and 2.0 * shape.radius <= _MAX_MARKER_SIZE_M
 
 
 def _same_camera(stem: str, parent: str) -> bool:

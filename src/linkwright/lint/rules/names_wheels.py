@@ -26,7 +26,7 @@ _OTHER_PART = lazy_pattern(
     re.IGNORECASE,
 )
 _OPPOSITE_SIDES = {"left": "right", "l": "r", "lhs": "rhs"}
-_POSITION_TOLERANCE = 1e-3
+_POSITION_TOLERANCE_M = 1e-3
 _AXIS_TOLERANCE = cos(radians(10.0))
 
 
@@ -121,7 +121,7 @@ class WheelSide(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for left, right in pairs(list(wheels(subject))):
             gap = subtract_vectors(left.frame.position, right.frame.position)
-            if gap[1] < -_POSITION_TOLERANCE and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
+            if gap[1] < -_POSITION_TOLERANCE_M and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
                 note = Note(
                     phrase("'{name}' is at y = {position:g}", name=right.joint.name, position=right.frame.position[1]),
                     _span_of(right.joint),
@@ -312,7 +312,10 @@ class WheelsNotMirrored(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for left, right in pairs(list(wheels(subject))):
             (lx, ly, lz), (rx, ry, rz) = left.frame.position, right.frame.position
-            if max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _POSITION_TOLERANCE and right.joint.element is not None:
+            if (
+                max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _POSITION_TOLERANCE_M
+                and right.joint.element is not None
+            ):
                 note = Note(
                     phrase("'{name}' is at {lx:.4g} {ly:.4g} {lz:.4g}", name=left.joint.name, lx=lx, ly=ly, lz=lz),
                     _span_of(left.joint),

@@ -160,7 +160,7 @@ class RepeatedElement(Rule):
             first_elements: dict[str, Element] = {}
             for child in schema_element.element.elements():
                 rule = schema_element.rule.child_rules.get(child.tag)
-                if rule is None or rule.many or schema_element.rule is schema.GEOMETRY:
+                if rule is None or rule.is_repeated or schema_element.rule is schema.GEOMETRY:
                     continue
                 first_element = first_elements.setdefault(child.tag, child)
                 if first_element is not child:

@@ -1,4 +1,4 @@
-"""Combines the responses of several language servers to one request."""
+"""Combine the responses of several language servers to one request."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from linkwright.lsp.python.open_texts import OpenText
 
-OWN = "linkwright"
+OWN_SERVER = "linkwright"
 """The name of Linkwright's own server, and the source of its findings."""
 
 COMPLETION = "textDocument/completion"
@@ -33,13 +33,13 @@ _SERVER = "linkwrightServer"
 _DATA = "data"
 
 
-def is_enough(method: str, answer: Any) -> bool:
+def is_final_response(method: str, response: Any) -> bool:
     """Return whether the response of Linkwright's own server makes the other responses unnecessary."""
-    return method not in (COMPLETION, CODE_ACTION) and not _is_empty(answer)
+    return method not in (COMPLETION, CODE_ACTION) and not _is_empty(response)
 
 
 def combine_responses(
-    method: str, answers: Sequence[tuple[str, Any]], text: OpenText, parameters: Mapping[str, Any]
+    method: str, responses: Sequence[tuple[str, Any]], text: OpenText, parameters: Mapping[str, Any]
 ) -> Any:
     """Combine the responses of several servers to a request.
 
@@ -48,16 +48,16 @@ def combine_responses(
 
     Args:
         method: the method of the request.
-        answers: the name of each server and its answer, Linkwright's own server first.
+        responses: the name of each server and its response, Linkwright's own server first.
         text: the text.
         parameters: the parameters of the request.
     """
-    nonempty_answers = [(server, answer) for server, answer in answers if not _is_empty(answer)]
+    nonempty_responses = [(server, response) for server, response in responses if not _is_empty(response)]
     if method == COMPLETION:
-        return _completions([answer for _, answer in nonempty_answers], text, parameters)
+        return _completions([response for _, response in nonempty_responses], text, parameters)
     if method == CODE_ACTION:
-        return [action for server, answer in nonempty_answers for action in _actions(server, answer)]
-    return nonempty_answers[0][1] if nonempty_answers else next((answer for _, answer in answers), None)
+        return [action for server, response in nonempty_responses for action in _actions(server, response)]
+    return nonempty_responses[0][1] if nonempty_responses else next((response for _, response in responses), None)
 
 
 def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
@@ -79,46 +79,50 @@ def _actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[
 
     The actions of other servers are marked with the server's name, and their commands are omitted.
     """
-    if server == OWN:
+    if server == OWN_SERVER:
         return list(actions)
     return [marked_action(server, action) for action in actions if action.get("command") is None]
 
 
-def _completions(answers: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
+def _completions(responses: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
     """Combine the completions of all servers, unless the first server specifies a range.
 
     Such a server replaces more or less than the word at the cursor, and its completions are returned alone.
 
     Editors apply the range of the first item to all items.
     """
-    if len(answers) < 2:
-        return answers[0] if answers else None
-    lists = [answer if isinstance(answer, dict) else {"isIncomplete": False, "items": answer} for answer in answers]
+    if len(responses) < 2:
+        return responses[0] if responses else None
+    lists = [
+        response if isinstance(response, dict) else {"isIncomplete": False, "items": response} for response in responses
+    ]
     first, *others = lists
     edited_range = _edited_range(first)
     if edited_range is not None and text.text_in(edited_range) != text.word_before(parameters["position"]):
         return first
-    names = {_plain(item["label"]) for item in first["items"]}
+    names = {_label_word(item["label"]) for item in first["items"]}
     items = list(map(_with_defaults(first), first["items"]))
     for other_list in others:
         items += [
-            item for item in map(_with_defaults(other_list), other_list["items"]) if _plain(item["label"]) not in names
+            item
+            for item in map(_with_defaults(other_list), other_list["items"])
+            if _label_word(item["label"]) not in names
         ]
     return {"isIncomplete": any(other_list.get("isIncomplete") for other_list in lists), "items": items}
 
 
-def _edited_range(answer: Mapping[str, Any]) -> Mapping[str, Any] | None:
+def _edited_range(response: Mapping[str, Any]) -> Mapping[str, Any] | None:
     """Return the range that the items of a list replace, or None for the word at the cursor."""
-    edit_range = answer.get("itemDefaults", {}).get("editRange") or answer["items"][0].get("textEdit")
+    edit_range = response.get("itemDefaults", {}).get("editRange") or response["items"][0].get("textEdit")
     if edit_range is None:
         return None
     range_: Mapping[str, Any] = edit_range.get("range") or edit_range.get("insert") or edit_range
     return range_
 
 
-def _with_defaults(answer: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], dict[str, Any]]:
+def _with_defaults(response: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], dict[str, Any]]:
     """Return a function that adds the defaults of a completion list to an item."""
-    defaults = dict(answer.get("itemDefaults", {}))
+    defaults = dict(response.get("itemDefaults", {}))
     edit_range = defaults.pop("editRange", None)
 
     def completed(item: Mapping[str, Any]) -> dict[str, Any]:
@@ -131,9 +135,9 @@ def _with_defaults(answer: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], d
     return completed
 
 
-def _plain(label: str) -> str:
+def _label_word(label: str) -> str:
     return label.rstrip("=(")
 
 
-def _is_empty(answer: Any) -> bool:
-    return answer is None or answer == [] or (isinstance(answer, dict) and answer.get("items") == [])
+def _is_empty(response: Any) -> bool:
+    return response is None or response == [] or (isinstance(response, dict) and response.get("items") == [])

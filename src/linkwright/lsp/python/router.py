@@ -18,10 +18,10 @@ from linkwright.diagnostics.translation import localized
 from linkwright.lsp.python.answers import (
     CAPABILITIES,
     CODE_ACTION,
-    OWN,
+    OWN_SERVER,
     RENAME,
     combine_responses,
-    is_enough,
+    is_final_response,
     marked_action,
     server_of_action,
 )
@@ -32,7 +32,7 @@ from linkwright.lsp.python.workspace_stubs import WorkspaceStubs
 from linkwright.lsp.server import path_of
 
 _log = logging.getLogger(__name__)
-_PATIENCE_SECONDS = 5.0
+_RESPONSE_TIMEOUT_S = 5.0
 """The time in which other servers must respond after Linkwright's own server has responded."""
 _MAX_STARTS = 3
 _METHOD_NOT_FOUND = -32601
@@ -65,7 +65,7 @@ class _Question:
     method: str
     parameters: Message
     text: OpenText
-    answers: dict[str, Message] = field(default_factory=dict)
+    responses: dict[str, Message] = field(default_factory=dict)
     awaited: list[str] = field(default_factory=list)
     deadline: float | None = None
 
@@ -189,12 +189,12 @@ class Router:
             text.change(message["params"]["textDocument"]["version"], message["params"]["contentChanges"])
         elif message["method"] == "textDocument/didClose":
             del self._texts[text.uri]
-            self._editor.send(_publication({"uri": text.uri, "diagnostics": text.findings_of(OWN)}))
+            self._editor.send(_publication({"uri": text.uri, "diagnostics": text.findings_of(OWN_SERVER)}))
 
     def _ask(self, message: Message, text: OpenText) -> None:
         """Send a request to all servers, and record that their responses must be combined."""
         others = self._servers if self._held is None else self._programs
-        question = _Question(message["method"], message["params"], text, awaited=[OWN, *others])
+        question = _Question(message["method"], message["params"], text, awaited=[OWN_SERVER, *others])
         self._questions[message["id"]] = question
         for name in tuple(question.awaited):
             self._send(name, _for_server(message, name))
@@ -213,14 +213,14 @@ class Router:
 
     def _on_own(self, message: Message) -> None:
         if "method" not in message and message.get("id") in self._questions:
-            self._on_answered(OWN, message)
+            self._on_answered(OWN_SERVER, message)
             return
         if "method" not in message and message.get("id") == self._initialize_id and "result" in message:
             self._initialize_id = None
             self._encoding = message["result"]["capabilities"].get("positionEncoding", self._encoding)
             message = _with_python(message)
         if message.get("method") == _PUBLISH and message["params"]["uri"] in self._texts:
-            self._publish(OWN, message["params"])
+            self._publish(OWN_SERVER, message["params"])
             return
         self._editor.send(message)
 
@@ -263,10 +263,10 @@ class Router:
         if question is None or name not in question.awaited:
             return
         question.awaited.remove(name)
-        question.answers[name] = message
-        if name == OWN:
-            question.deadline = time.monotonic() + _PATIENCE_SECONDS
-            if "error" not in message and is_enough(question.method, message.get("result")):
+        question.responses[name] = message
+        if name == OWN_SERVER:
+            question.deadline = time.monotonic() + _RESPONSE_TIMEOUT_S
+            if "error" not in message and is_final_response(question.method, message.get("result")):
                 question.awaited.clear()
             if "error" in message and question.method == RENAME:  # no other server tries a refused rename
                 question.awaited.clear()
@@ -275,14 +275,14 @@ class Router:
 
     def _answer(self, identifier: Any, question: _Question) -> None:
         del self._questions[identifier]
-        names = [name for name in (OWN, *self._programs) if name in question.answers]
-        answers = [
-            (name, question.answers[name].get("result")) for name in names if "error" not in question.answers[name]
+        names = [name for name in (OWN_SERVER, *self._programs) if name in question.responses]
+        responses = [
+            (name, question.responses[name].get("result")) for name in names if "error" not in question.responses[name]
         ]
-        result = combine_responses(question.method, answers, question.text, question.parameters)
-        own_answer = question.answers.get(OWN, {})
-        if result is None and "error" in own_answer:
-            self._editor.send(own_answer)
+        result = combine_responses(question.method, responses, question.text, question.parameters)
+        own_response = question.responses.get(OWN_SERVER, {})
+        if result is None and "error" in own_response:
+            self._editor.send(own_response)
         else:
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": result})
 
@@ -376,7 +376,7 @@ class Router:
 
     def _send(self, name: str, message: Message) -> None:
         """Send a message to a server. An unsupported request counts as answered."""
-        if name == OWN:
+        if name == OWN_SERVER:
             self._own_server.send(message)
             return
         if self._held is not None:
@@ -412,7 +412,7 @@ def _for_server(message: Message, name: str) -> Message:
         return message
     context = message["params"]["context"]
     findings = [
-        diagnostic for diagnostic in context["diagnostics"] if str(diagnostic.get("source", OWN)).lower() == name
+        diagnostic for diagnostic in context["diagnostics"] if str(diagnostic.get("source", OWN_SERVER)).lower() == name
     ]
     return {**message, "params": {**message["params"], "context": {**context, "diagnostics": findings}}}
 

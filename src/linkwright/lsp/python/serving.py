@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from pygls.lsp.server import LanguageServer
 
-from linkwright.lsp.python.answers import OWN
+from linkwright.lsp.python.answers import OWN_SERVER
 from linkwright.lsp.python.programs import Program
 from linkwright.lsp.python.router import Router
 from linkwright.lsp.python.servers import Stream, read_messages
@@ -29,7 +29,7 @@ def serve(server: LanguageServer, programs: Sequence[Program]) -> None:
         return
     own_requests, to_own = os.pipe()
     from_own, own_responses = os.pipe()
-    editor, own = Stream("editor", responses), Stream(OWN, os.fdopen(to_own, "wb"))
+    editor, own = Stream("editor", responses), Stream(OWN_SERVER, os.fdopen(to_own, "wb"))
     router = Router(editor, own, programs)
     read_messages(requests, router.from_editor)
     ended = read_messages(os.fdopen(from_own, "rb"), router.from_own)

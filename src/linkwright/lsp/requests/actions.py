@@ -71,7 +71,7 @@ def _workspace_edit(server: LinkwrightServer, refactoring: Refactoring) -> types
     return document_edits(server, refactoring.edits)
 
 
-async def _refactoring_edit(
+async def _prove_refactoring(
     server: LinkwrightServer, action: Action, path: Path, start: int, end: int, texts: Mapping[Path, str]
 ) -> types.WorkspaceEdit:
     """Return the proved edit of a refactoring.
@@ -94,7 +94,7 @@ def _content_modified_error() -> JsonRpcException:
     return JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
 
-async def _refactorings(
+async def _offer_refactorings(
     server: LinkwrightServer, offers: Iterable[Offer], path: Path, positions: TextPositions, selection: tuple[int, int]
 ) -> list[types.CodeAction]:
     """Return the code actions of refactorings, with edits unless the editor resolves them later."""
@@ -112,7 +112,7 @@ async def _refactorings(
             actions.append(types.CodeAction(title, kind, data=resolve_data))
             continue
         try:
-            edit = await _refactoring_edit(server, offer.action, path, *selection, server.texts())
+            edit = await _prove_refactoring(server, offer.action, path, *selection, server.texts())
         except LinkwrightError:  # An unproved refactoring is not offered.
             continue
         actions.append(types.CodeAction(title, kind, edit=edit))
@@ -134,7 +134,7 @@ async def _with_edit(server: LinkwrightServer, action: types.CodeAction) -> type
     except ValueError:
         return action
     try:
-        action.edit = await _refactoring_edit(server, refactoring, path, start, end, texts)
+        action.edit = await _prove_refactoring(server, refactoring, path, start, end, texts)
     except LinkwrightError as error:
         message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
         raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
@@ -168,7 +168,7 @@ def add_requests(server: LinkwrightServer) -> None:
                 if is_requested(offer.action.value, only)
                 and (offer.action is not Action.CONVERT_TO_XACRO or _can_create_files(server))
             ]
-            actions += await _refactorings(server, offers, path, positions, (start, end))
+            actions += await _offer_refactorings(server, offers, path, positions, (start, end))
         return [action for action in actions if is_requested(_kind_name(action.kind or ""), only)]
 
     @server.feature(types.CODE_ACTION_RESOLVE)

@@ -63,8 +63,8 @@ def completion_items(
     """Convert completions to the protocol, with sort texts that keep their order."""
     offset = positions.offset(position)
     converted = [_completion_item(item, positions, offset, supports_snippets=supports_snippets) for item in completions]
-    for number, item in enumerate(converted):
-        item.sort_text = f"{number:05}"
+    for index, item in enumerate(converted):
+        item.sort_text = f"{index:05}"
     return converted
 
 

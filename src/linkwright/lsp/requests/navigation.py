@@ -44,9 +44,7 @@ def matching_names(names: Iterable[NameDefinition], query: str) -> list[NameDefi
         return all(character in characters for character in query)
 
     lower_names = [(name.name.lower(), name) for name in names]
-    ranked = [
-        (query not in lower, len(lower), number) for number, (lower, _) in enumerate(lower_names) if matches(lower)
-    ]
+    ranked = [(query not in lower, len(lower), index) for index, (lower, _) in enumerate(lower_names) if matches(lower)]
     return [lower_names[number][1] for *_, number in sorted(ranked)]
 
 

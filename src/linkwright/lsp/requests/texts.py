@@ -60,12 +60,12 @@ def format_edits(
 
 def symbols(positions: TextPositions) -> list[types.DocumentSymbol]:
     """Return the named elements of a text as nested symbols."""
-    return [*_symbols(Outline.of(positions.text).elements, positions)]
+    return [*_convert_elements(Outline.of(positions.text).elements, positions)]
 
 
-def _symbols(elements: Iterable[OutlineElement], positions: TextPositions) -> Iterable[types.DocumentSymbol]:
+def _convert_elements(elements: Iterable[OutlineElement], positions: TextPositions) -> Iterable[types.DocumentSymbol]:
     for element in elements:
-        children = [*_symbols(element.children, positions)]
+        children = [*_convert_elements(element.children, positions)]
         if not element.is_named and element.tag.name not in _KINDS:
             yield from children
             continue
@@ -78,9 +78,9 @@ def _symbols(elements: Iterable[OutlineElement], positions: TextPositions) -> It
         )
 
 
-def _document_symbol(symbol: Symbol, positions: TextPositions) -> types.DocumentSymbol:
+def _convert_symbol(symbol: Symbol, positions: TextPositions) -> types.DocumentSymbol:
     range_ = positions.range(symbol.start, symbol.end)
-    children = [_document_symbol(child, positions) for child in symbol.children]
+    children = [_convert_symbol(child, positions) for child in symbol.children]
     kind = types.SymbolKind[symbol.kind.value]
     return types.DocumentSymbol(symbol.name, kind, range_, range_, detail=symbol.detail or None, children=children)
 
@@ -165,7 +165,7 @@ def add_requests(server: LinkwrightServer) -> None:
     ) -> list[types.DocumentSymbol] | None:
         context = server.format_context(params.text_document)
         if context is not None and context.format.symbols is not None:
-            return [_document_symbol(symbol, context.positions) for symbol in context.format.symbols(context.document)]
+            return [_convert_symbol(symbol, context.positions) for symbol in context.format.symbols(context.document)]
         _, positions = server.xml_text(params.text_document)
         return None if positions is None else symbols(positions)
 

@@ -54,7 +54,7 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
     code.structure(structure, name)
     code.end_run()
     body = "    e = len(d)\n" + code.body()
-    reader: Callable[[bytes], Any] = code.compiled(f"def read(d):\n{body}    return {name}\n", structure)
+    reader: Callable[[bytes], Any] = code.compile_function(f"def read(d):\n{body}    return {name}\n", structure)
     return reader
 
 
@@ -70,7 +70,7 @@ def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Call
         code.structure(structure, name)
         code.end_run()
         source = f"def read(d, p, e):\n{code.body()}    return {name}, p\n"
-        reader = _part_readers[structure.type_name, order] = code.compiled(source, structure)
+        reader = _part_readers[structure.type_name, order] = code.compile_function(source, structure)
     return reader
 
 
@@ -97,7 +97,7 @@ class _ReaderCode:
     def body(self) -> str:
         return "".join(self._lines)
 
-    def compiled(self, source: str, structure: Structure) -> Any:
+    def compile_function(self, source: str, structure: Structure) -> Any:
         exec(compile(source, f"<CDR reader of {structure.type_name}>", "exec"), self._scope)  # noqa: S102 - our own code
         return self._scope["read"]
 

@@ -29,18 +29,18 @@ _HEADER = 0x100
 """The four header bytes of a message, 00 01 00 00, as a little-endian number."""
 
 
-class LengthFaultError(ValueError):
+class LengthError(ValueError):
     """Raised when a field has more or fewer values than its definition allows."""
 
 
 def _check_length(name: str, value: Any, size: int) -> None:
     if len(value) != size:
-        raise LengthFaultError(f"'{name}' has {len(value)} values instead of {size}")
+        raise LengthError(f"'{name}' has {len(value)} values instead of {size}")
 
 
 def _check_bound(name: str, value: Any, size: int) -> None:
     if len(value) > size:
-        raise LengthFaultError(f"'{name}' has a length of {len(value)}, more than its bound of {size}")
+        raise LengthError(f"'{name}' has a length of {len(value)}, more than its bound of {size}")
 
 
 _SCOPE: dict[str, Any] = {
@@ -64,7 +64,9 @@ def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
     code.pack("I", str(_HEADER), alignment=START)
     code.structure(structure, "m", 0)
     result = code.result()
-    writer: Callable[[Any], bytes] = code.compiled(f"def write(m):\n{code.body()}    return {result}\n", structure)
+    writer: Callable[[Any], bytes] = code.compile_function(
+        f"def write(m):\n{code.body()}    return {result}\n", structure
+    )
     return writer
 
 
@@ -81,7 +83,7 @@ def _compile_part(structure: Structure) -> Callable[..., int]:
         code.sync()
         code.needs_position = True
         body = code.body(start="")
-        writer = _part_writers[structure.type_name] = code.compiled(
+        writer = _part_writers[structure.type_name] = code.compile_function(
             f"def write(o, m, p):\n{body}    return p\n", structure
         )
     return writer
@@ -123,30 +125,32 @@ class _WriterCode:
         pieces = self._pieces
         return pieces[0] if len(pieces) == 1 and pieces[0].startswith("P") else f"join(({', '.join(pieces)},))"
 
-    def compiled(self, source: str, structure: Structure) -> Any:
+    def compile_function(self, source: str, structure: Structure) -> Any:
         exec(compile(source, f"<CDR writer of {structure.type_name}>", "exec"), self._scope)  # noqa: S102 - our own code
         return self._scope["write"]
 
     # --- structures and fields ------------------------------------------------------------------------------
 
-    def structure(self, structure: Structure, source: str, following: int) -> None:
+    def structure(self, structure: Structure, source: str, following_alignment: int) -> None:
         """Generate the code that writes a structure's fields.
 
         Args:
             structure: the structure to write.
             source: the Python expression for the structure.
-            following: the alignment of the data after the structure in bytes; 0 if it is not known.
+            following_alignment: the alignment of the data after the structure in bytes; 0 if it is not known.
         """
         fields = structure.wire_fields
         for index, field in enumerate(fields):
-            next_alignment = field_facts(fields[index + 1]).first_alignment if index + 1 < len(fields) else following
+            next_alignment = (
+                field_facts(fields[index + 1]).first_alignment if index + 1 < len(fields) else following_alignment
+            )
             value = "0" if field.name == EMPTY_MEMBER else f"{source}._{field.name}"
             self._write_field(field, value, next_alignment)
 
-    def _write_field(self, field: Field, value: str, following: int) -> None:
+    def _write_field(self, field: Field, value: str, following_alignment: int) -> None:
         kind = field.type
         if kind.container is Container.ONE:
-            self._write_single(field.name, kind, value, following)
+            self._write_single(field.name, kind, value, following_alignment)
             return
         if kind.is_numeric_array:
             self._write_numbers(field, value)
@@ -160,31 +164,31 @@ class _WriterCode:
             if kind.base != "string":
                 self.align(4)
                 self.pack("I", f"len({values})")
-        self._values(field, values, following)
+        self._write_values(field, values, following_alignment)
 
-    def _write_single(self, name: str, kind: FieldType, value: str, following: int) -> None:
+    def _write_single(self, name: str, kind: FieldType, value: str, following_alignment: int) -> None:
         primitive = kind.primitive
         if primitive is None:
-            self._write_nested(kind, value, following)
+            self._write_nested(kind, value, following_alignment)
         elif primitive.python is str:
             if kind.string_bound is not None:
                 self._add_line(f"check_bound({name!r}, {value}, {kind.string_bound})")
-            self._text(kind, value, following)
+            self._write_text(kind, value, following_alignment)
         else:
             assert primitive.code is not None
             self.align(primitive.size)
             self.pack(primitive.code, value)
 
-    def _text(self, kind: FieldType, value: str, following: int) -> None:
+    def _write_text(self, kind: FieldType, value: str, following_alignment: int) -> None:
         self.align(4)
         if kind.base == "wstring":
             self._add_piece(self._assign_variable(f"wide({value})"), Alignment(4, 0))
-        elif following >= 4:
+        elif following_alignment >= 4:
             self._add_piece(self._assign_variable(f"TEXT4[{value}]"), Alignment(4, 0))
         else:
             self._add_piece(self._assign_variable(f"TEXT1[{value}]"), ANYWHERE)
 
-    def _write_nested(self, kind: FieldType, value: str, following: int) -> None:
+    def _write_nested(self, kind: FieldType, value: str, following_alignment: int) -> None:
         structure = LIBRARY.structure(kind.base)
         if facts(structure).leaf_count > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
             self.flush()
@@ -193,7 +197,9 @@ class _WriterCode:
             self._add_line(f"p = {self._constant_name(_compile_part(structure), 'W')}(o, {value}, p)")
             self.alignment = ANYWHERE
         else:
-            self.structure(structure, value if value.isidentifier() else self._assign_variable(value), following)
+            self.structure(
+                structure, value if value.isidentifier() else self._assign_variable(value), following_alignment
+            )
 
     def _write_numbers(self, field: Field, value: str) -> None:
         kind, primitive = field.type, field.type.primitive
@@ -226,7 +232,7 @@ class _WriterCode:
         self._unsynced_sizes.append(f"{primitive.size} * {length}" if primitive.size > 1 else length)
         self.alignment = Alignment(min(primitive.size, 4), 0)
 
-    def _values(self, field: Field, values: str, following: int) -> None:
+    def _write_values(self, field: Field, values: str, following_alignment: int) -> None:
         kind, primitive = field.type, field.type.primitive
         if primitive is not None and primitive.python in (bool, bytes):
             self._write_small_values(primitive, values)
@@ -235,7 +241,7 @@ class _WriterCode:
                 with self._loop("e", values) as item:
                     self._add_line(f"check_bound({field.name!r}, {item}, {kind.string_bound})")
             self.align(4)
-            cache_name, alignment = ("LIST4", Alignment(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
+            cache_name, alignment = ("LIST4", Alignment(4, 0)) if following_alignment >= 4 else ("LIST1", ANYWHERE)
             self._add_piece(self._assign_variable(f"{cache_name}[tuple({values})]"), alignment)
         else:
             item_type = FieldType(kind.base, kind.string_bound)

@@ -13,13 +13,14 @@ from typing import NamedTuple
 
 from linkwright.geometry.single import Vector3, dot
 
-_RADIUS = 6378137.0
+_EQUATORIAL_RADIUS_M = 6378137.0
 _FLATTENING = 1.0 / 298.257223563
+"""The flattening of the ellipsoid of WGS 84."""
 _ECCENTRICITY_SQUARED = _FLATTENING * (2.0 - _FLATTENING)
 _ECCENTRICITY = sqrt(_ECCENTRICITY_SQUARED)
 _N = _FLATTENING / (2.0 - _FLATTENING)
 _SCALE, _FALSE_EASTING, _FALSE_NORTHING = 0.9996, 500000.0, 10000000.0
-_RECTIFYING = _RADIUS / (1.0 + _N) * (1.0 + _N**2 / 4.0 + _N**4 / 64.0)
+_RECTIFYING = _EQUATORIAL_RADIUS_M / (1.0 + _N) * (1.0 + _N**2 / 4.0 + _N**4 / 64.0)
 _FORWARD = (
     _N / 2.0 - 2.0 * _N**2 / 3.0 + 5.0 * _N**3 / 16.0 + 41.0 * _N**4 / 180.0,
     13.0 * _N**2 / 48.0 - 3.0 * _N**3 / 5.0 + 557.0 * _N**4 / 1440.0,
@@ -150,7 +151,7 @@ class TangentPlane:
 
 def _geocentric(latitude: float, longitude: float, altitude: float) -> Vector3:
     phi, lam = radians(latitude), radians(longitude)
-    radius = _RADIUS / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+    radius = _EQUATORIAL_RADIUS_M / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
     axis_distance = (radius + altitude) * cos(phi)
     return (
         axis_distance * cos(lam),
@@ -163,7 +164,11 @@ def _geodetic(x: float, y: float, z: float) -> Vector3:
     axis_distance = hypot(x, y)
     phi, altitude = atan2(z, axis_distance * (1.0 - _ECCENTRICITY_SQUARED)), 0.0
     for _ in range(_ITERATIONS):
-        radius = _RADIUS / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
-        altitude = axis_distance * cos(phi) + z * sin(phi) - _RADIUS * sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+        radius = _EQUATORIAL_RADIUS_M / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+        altitude = (
+            axis_distance * cos(phi)
+            + z * sin(phi)
+            - _EQUATORIAL_RADIUS_M * sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+        )
         phi = atan2(z, axis_distance * (1.0 - _ECCENTRICITY_SQUARED * radius / (radius + altitude)))
     return degrees(phi), degrees(atan2(y, x)), altitude

@@ -40,6 +40,7 @@ from linkwright.navigation.estimation.motion_model import (
 )
 
 GRAVITY = 9.80665
+"""The standard acceleration of gravity in m/s2."""
 _PLANAR_ZEROS = (State.Z, State.ROLL, State.PITCH, State.VZ, State.VROLL, State.VPITCH, State.AZ)
 """The quantities that are zero for a body on a plane."""
 _FLAT_VARIANCE = 1e-6

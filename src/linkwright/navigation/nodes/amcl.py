@@ -29,8 +29,8 @@ from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 
 _POSE_TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 _MAX_QUEUED_SCANS = 10
-_WARNING_PERIOD = 5.0
-_SCAN_TIMEOUT = 15.0
+_WARNING_PERIOD_S = 5.0
+_SCAN_TIMEOUT_S = 15.0
 _UNKNOWN_COVARIANCE = np.diag((0.25, 0.25, (np.pi / 12.0) ** 2))
 _MIN_FIT = 0.3
 """A scan does not fit if at most this share of its beams ends near an obstacle of the map."""
@@ -92,7 +92,7 @@ class AmclNode(ManagedNode):
     def activate(self) -> None:
         """Start localizing, from the initial pose if one is set."""
         self._last_scan_ns = self.get_clock().now().nanoseconds
-        self._scan_timer = self.create_timer(_SCAN_TIMEOUT, self._check_scan_timeout)
+        self._scan_timer = self.create_timer(_SCAN_TIMEOUT_S, self._check_scan_timeout)
         if self._settings.initial_pose is not None:
             self._set_pose(self._settings.initial_pose, np.zeros((3, 3)))
         self._is_localizing = True
@@ -140,14 +140,14 @@ class AmclNode(ManagedNode):
         if self._map is None:
             topic = self.resolve_topic_name(self._settings.parameters.map_topic)
             hint = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
-            self.get_logger().warning(f"Waiting for map....{hint}", throttle_duration_sec=_WARNING_PERIOD)
+            self.get_logger().warning(f"Waiting for map....{hint}", throttle_duration_sec=_WARNING_PERIOD_S)
             return
         self._queued_scans.append(message)
         self._process_scans()
 
     def _check_scan_timeout(self) -> None:
         silent_seconds = (self.get_clock().now().nanoseconds - self._last_scan_ns) / 1e9
-        if silent_seconds >= _SCAN_TIMEOUT:
+        if silent_seconds >= _SCAN_TIMEOUT_S:
             self.get_logger().warning(
                 "No laser scan received (and thus no pose updates have been published) for "
                 f"{silent_seconds:.1f} seconds. "
@@ -176,7 +176,7 @@ class AmclNode(ManagedNode):
                 self._queued_scans.popleft()
                 self.get_logger().error(
                     f"Couldn't determine robot's pose associated with laser scan: {error}",
-                    throttle_duration_sec=_WARNING_PERIOD,
+                    throttle_duration_sec=_WARNING_PERIOD_S,
                 )
                 continue
             self._queued_scans.popleft()
@@ -254,7 +254,7 @@ class AmclNode(ManagedNode):
         if self._pose is None:
             self.get_logger().warning(
                 "AMCL cannot publish a pose or update the transform. Please set the initial pose...",
-                throttle_duration_sec=_WARNING_PERIOD,
+                throttle_duration_sec=_WARNING_PERIOD_S,
             )
             return
         self._pose, self._covariance = estimate.pose, estimate.covariance
@@ -281,7 +281,7 @@ class AmclNode(ManagedNode):
             self.get_logger().warning(
                 f"only {fit:.0%} of the beams end near an obstacle of the map: the pose or the map is wrong. "
                 "Set the pose with 2D Pose Estimate, or call /reinitialize_global_localization and drive",
-                throttle_duration_sec=_SCAN_TIMEOUT,
+                throttle_duration_sec=_SCAN_TIMEOUT_S,
             )
 
     def _publish_cloud(self, stamp_ns: int) -> None:
@@ -290,9 +290,9 @@ class AmclNode(ManagedNode):
         message = get_message("nav2_msgs/msg/ParticleCloud")()
         message.header.frame_id = self._settings.global_frame
         message.header.stamp = Time.from_nanoseconds(stamp_ns)
-        kind = get_message("nav2_msgs/msg/Particle")
+        particle_class = get_message("nav2_msgs/msg/Particle")
         for (x, y, yaw), weight in zip(self._filter.particles.tolist(), self._filter.weights.tolist(), strict=True):
-            particle = kind(weight=weight)
+            particle = particle_class(weight=weight)
             _write_pose(particle.pose, (x, y, yaw))
             message.particles.append(particle)
         self._cloud_publisher.publish(message)

@@ -123,18 +123,18 @@ class BehaviorNode(ManagedNode):
         )
         self.register(self.create_subscription(polygon, self._topic_name("footprint"), self._on_footprint, _DEPTH))
         teleop_topic = self._value("cmd_vel_teleop")
-        for kind in velocity_types(self, teleop_topic, self._publishes_stamped):
-            self.register(self.create_subscription(kind, teleop_topic, self._on_teleop_velocity, _DEPTH))
+        for message_type in velocity_types(self, teleop_topic, self._publishes_stamped):
+            self.register(self.create_subscription(message_type, teleop_topic, self._on_teleop_velocity, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._publishes_stamped)
         for plugin in get_string_list(self, "behavior_plugins", list(_BEHAVIOR_TYPES)):
-            kind = get_plugin_type(
+            plugin_type = get_plugin_type(
                 self, plugin, {name: class_name for name, (class_name, _) in _BEHAVIOR_TYPES.items()}
             )
             behavior_by_class = {class_name: (name, action) for name, (class_name, action) in _BEHAVIOR_TYPES.items()}
-            if kind not in behavior_by_class:
-                raise bad_value(f"{plugin}.plugin", kind, self.get_name(), list(behavior_by_class))
-            name, action = behavior_by_class[kind]
-            self.get_logger().info(f"Creating behavior plugin {plugin} of type {kind}")
+            if plugin_type not in behavior_by_class:
+                raise bad_value(f"{plugin}.plugin", plugin_type, self.get_name(), list(behavior_by_class))
+            name, action = behavior_by_class[plugin_type]
+            self.get_logger().info(f"Creating behavior plugin {plugin} of type {plugin_type}")
             self._servers[plugin] = self.register(self._create_server(plugin, name, action))
 
     def deactivate(self) -> None:

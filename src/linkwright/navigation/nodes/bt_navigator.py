@@ -40,7 +40,7 @@ _REPLANNING_PERIODS = {"pose": 1.0, "poses": 3.0}
 _PASSED_DISTANCE = 0.7
 """The distance within which an intermediate pose counts as passed, in meters."""
 _SPIN_ANGLE, _WAIT_SECONDS, _BACK_UP_DISTANCE, _BACK_UP_SPEED = 1.57, 5.0, 0.3, 0.05
-_ALLOWANCE = 10.0
+_EXTRA_TIME_S = 10.0
 
 
 class NavigatorNode(StepNode):
@@ -93,14 +93,14 @@ class NavigatorNode(StepNode):
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
-    def _create_server(self, kind: str, name: str, variant: str) -> GoalServer:
+    def _create_server(self, action_type: str, name: str, variant: str) -> GoalServer:
         def begin(goal: ServerGoalHandle) -> None:
             self._start(variant, goal.request)
 
         return self.register(
             GoalServer(
                 self,
-                f"nav2_msgs/action/{kind}",
+                f"nav2_msgs/action/{action_type}",
                 name,
                 begin,
                 accepts_goal=lambda goal: self._accepts_goal(variant, goal),
@@ -288,7 +288,7 @@ class NavigatorNode(StepNode):
 
     def _spin(self) -> Step:
         goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN_ANGLE)
-        goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
+        goal.time_allowance = Duration(seconds=_EXTRA_TIME_S).to_msg()
         yield from self.run_remote_goal(self._clients["spin"], goal, "the robot could not spin")
 
     def _wait(self) -> Step:
@@ -299,7 +299,7 @@ class NavigatorNode(StepNode):
     def _back_up(self) -> Step:
         goal = get_action("nav2_msgs/action/BackUp").Goal(speed=_BACK_UP_SPEED)
         goal.target.x = _BACK_UP_DISTANCE
-        goal.time_allowance = Duration(seconds=_ALLOWANCE).to_msg()
+        goal.time_allowance = Duration(seconds=_EXTRA_TIME_S).to_msg()
         yield from self.run_remote_goal(self._clients["backup"], goal, "the robot could not back up")
 
     # --- topics -------------------------------------------------------------------------------------------------------

@@ -96,10 +96,10 @@ class MonitorNode(ManagedNode):
             self._state = self.register(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
         self._output = VelocityTopic(self, parameters.cmd_vel_out_topic, self._is_stamped)
         topic = parameters.cmd_vel_in_topic
-        for kind in velocity_types(self, topic, self._is_stamped):
+        for message_type in velocity_types(self, topic, self._is_stamped):
             commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
             callback = commander.tracking_callback(self._on_velocity)
-            subscription: Subscription[Any] = self.create_subscription(kind, topic, callback, _DEPTH)
+            subscription: Subscription[Any] = self.create_subscription(message_type, topic, callback, _DEPTH)
             commander.watch(self.register(subscription))
 
     def activate(self) -> None:

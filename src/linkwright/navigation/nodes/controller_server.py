@@ -38,7 +38,7 @@ from linkwright.nodes.settings import positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 
 _DEPTH = 10
-_WARNING_PERIOD = 2.0
+_WARNING_PERIOD_S = 2.0
 _MIN_WAIT = 3.0
 """The minimum time that the robot waits for missing data before the goal is aborted, in seconds."""
 _MAX_PATH_FRAME_AGE = 5.0
@@ -195,7 +195,7 @@ class ControllerNode(ManagedNode):
             self._fail(GoalError(problem.code, f"{problem}; the goal is aborted"))
         else:
             message = f"{problem}; the robot waits"
-            self.get_logger().warning(message, throttle_duration_sec=_WARNING_PERIOD)
+            self.get_logger().warning(message, throttle_duration_sec=_WARNING_PERIOD_S)
 
     def _drive(self, goals: GoalServer) -> None:
         """Compute and publish the next velocity, or succeed if the goal is reached.
@@ -248,7 +248,7 @@ class ControllerNode(ManagedNode):
         tolerance = self._value("failure_tolerance")
         if not tolerance:
             raise GoalError("NO_VALID_CONTROL", reason)
-        self.get_logger().warning(reason, throttle_duration_sec=_WARNING_PERIOD)
+        self.get_logger().warning(reason, throttle_duration_sec=_WARNING_PERIOD_S)
         self._publish(ZERO_VELOCITY)
         if 0.0 < tolerance < (now_ns - self._last_valid_ns) / 1e9:
             raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")

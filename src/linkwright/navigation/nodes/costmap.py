@@ -47,7 +47,7 @@ from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.settings import bad_value
 
-_WARNING_PERIOD = 5.0
+_WARNING_PERIOD_S = 5.0
 _MIN_CORNERS = 3
 _TF_TOPICS = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
@@ -177,7 +177,7 @@ class CostmapNode(ManagedNode):
         try:
             transform: Transform = self.transforms.lookup(self.global_frame, frame, time_ns)[0]
         except TransformException as error:
-            self.get_logger().warning(str(error), throttle_duration_sec=_WARNING_PERIOD)
+            self.get_logger().warning(str(error), throttle_duration_sec=_WARNING_PERIOD_S)
             return None
         x, y, yaw = pose
         transformed = compose(transform, (x, y, 0.0, *quaternion_from_rpy((0.0, 0.0, yaw))))
@@ -364,8 +364,8 @@ class CostmapNode(ManagedNode):
         ]
         if not is_before_iron():
             services.append(("GetCost", f"get_cost_{name}", self._get_cost))
-        for kind, service, callback in services:
-            self.register(self.create_service(get_service(f"nav2_msgs/srv/{kind}"), service, callback))
+        for type_name, service, callback in services:
+            self.register(self.create_service(get_service(f"nav2_msgs/srv/{type_name}"), service, callback))
 
     def _clear_entirely(self, _request: Any, response: Any) -> Any:
         self.get_logger().info("Received request to clear entirely the " + self.get_name())

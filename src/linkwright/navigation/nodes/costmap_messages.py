@@ -126,8 +126,8 @@ class CostmapPublisher:
             message.size_x, message.size_y = window.right - window.left, window.bottom - window.top
             self._raw_update_publisher.publish(message)
 
-    def _update_message(self, kind: str, cells: Any, window: Window, stamp: Any) -> Any:
-        message = get_message(kind)()
+    def _update_message(self, message_type: str, cells: Any, window: Window, stamp: Any) -> Any:
+        message = get_message(message_type)()
         message.header.frame_id, message.header.stamp = self._frame, stamp
         message.x, message.y, message.data = window.left, window.top, cells
         return message

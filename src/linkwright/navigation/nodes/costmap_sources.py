@@ -50,15 +50,15 @@ class SensorTopic(ABC):
     Args:
         node: the node that subscribes.
         topic: the name of the topic.
-        kind: the message type, without the package sensor_msgs.
+        message_name: the message type, without the package sensor_msgs.
         transforms: the transforms between frames.
         frame: the frame of the costmap.
     """
 
-    def __init__(self, node: Node, topic: str, kind: str, transforms: BufferCore, frame: str) -> None:
+    def __init__(self, node: Node, topic: str, message_name: str, transforms: BufferCore, frame: str) -> None:
         self._transforms, self._frame = transforms, frame
         self._queued_messages: deque[Any] = deque(maxlen=_MAX_QUEUED)
-        message = get_message(f"sensor_msgs/msg/{kind}")
+        message = get_message(f"sensor_msgs/msg/{message_name}")
         self._subscription = node.create_subscription(message, topic, self._receive, SENSOR_DATA_QOS)
 
     def destroy(self) -> None:
@@ -106,7 +106,7 @@ class PointsTopic(SensorTopic):
     Args:
         node: the node that subscribes.
         topic: the name of the topic.
-        kind: ``LaserScan`` or ``PointCloud2``.
+        message_name: ``LaserScan`` or ``PointCloud2``.
         buffer: receives the observations.
         transforms: the transforms between frames.
         frame: the frame of the costmap.
@@ -118,7 +118,7 @@ class PointsTopic(SensorTopic):
         self,
         node: Node,
         topic: str,
-        kind: str,
+        message_name: str,
         buffer: ObservationBuffer,
         transforms: BufferCore,
         frame: str,
@@ -126,12 +126,12 @@ class PointsTopic(SensorTopic):
         sensor_frame: str = "",
         inf_is_valid: bool = False,
     ) -> None:
-        super().__init__(node, topic, kind, transforms, frame)
+        super().__init__(node, topic, message_name, transforms, frame)
         self.buffer = buffer
         self._sensor_frame = sensor_frame
         self._inf_is_valid = inf_is_valid
         self._read_points: Callable[[Any], NDArray[np.float64] | None] = (
-            self._points_from_scan if kind == "LaserScan" else read_points
+            self._points_from_scan if message_name == "LaserScan" else read_points
         )
 
     @property

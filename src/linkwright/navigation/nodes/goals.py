@@ -37,9 +37,9 @@ class GoalServer:
 
     Args:
         node: the node that offers the action.
-        kind: the type of the action.
+        action_type: the type of the action.
         name: the name of the action.
-        begin: called with each accepted goal, after the previous goal was aborted.
+        on_accepted: called with each accepted goal, after the previous goal was aborted.
         accepts_goal: returns whether to accept a goal; by default every goal is accepted.
 
     Attributes:
@@ -49,15 +49,15 @@ class GoalServer:
     def __init__(
         self,
         node: ManagedNode,
-        kind: str,
+        action_type: str,
         name: str,
-        begin: Callable[[ServerGoalHandle], None],
+        on_accepted: Callable[[ServerGoalHandle], None],
         *,
         accepts_goal: Callable[[Any], bool] | None = None,
     ) -> None:
         self.active_goal: ServerGoalHandle | None = None
-        self._type = get_action(kind)
-        self._begin = begin
+        self._type = get_action(action_type)
+        self._on_goal_accepted = on_accepted
         self._accepts_goal = accepts_goal
         self._node = node
         self._server = ActionServer(
@@ -139,7 +139,7 @@ class GoalServer:
         self.abort("UNKNOWN", "another goal replaced it")
         goal.update(GoalEvent.EXECUTE)
         self.active_goal = goal
-        self._begin(goal)
+        self._on_goal_accepted(goal)
 
     def _result(self, code: str, reason: str, fields: dict[str, Any]) -> Any:
         result = self._type.Result()

@@ -22,7 +22,7 @@ from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import bad_value, log_unknown
 
-_CHECK_PERIOD = 1.0
+_CHECK_PERIOD_S = 1.0
 
 
 class _Transition(Enum):
@@ -163,11 +163,11 @@ class LifecycleManager(SingleNode):
         self._managed_nodes = [_ManagedNodeClient(self._node, name) for name in self._names]
         group = ReentrantCallbackGroup()  # ``is_active`` must respond while a long command runs.
         name = self._node.get_name()
-        for kind, service, callback in (
+        for service_type, service, callback in (
             ("nav2_msgs/srv/ManageLifecycleNodes", "manage_nodes", self._on_manage),
             ("std_srvs/srv/Trigger", "is_active", self._on_is_active),
         ):
-            self._node.create_service(get_service(kind), f"{name}/{service}", callback, callback_group=group)
+            self._node.create_service(get_service(service_type), f"{name}/{service}", callback, callback_group=group)
         DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
         if self._autostart:
             self._start_task(self._run_exclusively(self._startup))
@@ -368,11 +368,11 @@ class LifecycleManager(SingleNode):
         """
         waited_seconds = 0.0
         while waited_seconds < self._max_respawn_seconds and self._is_still_down():
-            await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _CHECK_PERIOD)
-            waited_seconds += _CHECK_PERIOD
+            await wait_for_future(self._node, asyncio.get_running_loop().create_future(), _CHECK_PERIOD_S)
+            waited_seconds += _CHECK_PERIOD_S
             async with self._command_lock:
                 if self._is_still_down() and all(
-                    [await managed.reports_unconfigured(_CHECK_PERIOD) for managed in self._managed_nodes]
+                    [await managed.reports_unconfigured(_CHECK_PERIOD_S) for managed in self._managed_nodes]
                 ):
                     self._logger.info("Successfully re-established connections from server respawns, starting back up.")
                     await self._startup()

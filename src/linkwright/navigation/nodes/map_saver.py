@@ -64,7 +64,7 @@ class _MapReceiver:
             )
             return MapMode.TRINARY
 
-    async def save(self, topic: str, name: str, kind: str, mode: MapMode, free: float, occupied: float) -> bool:
+    async def save(self, topic: str, name: str, image_format: str, mode: MapMode, free: float, occupied: float) -> bool:
         """Save the next map of a topic, and return whether that succeeded.
 
         A threshold of 0 selects the default from the parameters.
@@ -87,7 +87,9 @@ class _MapReceiver:
         if not name:
             name = f"map_{self._node.get_clock().now().nanoseconds // NANOSECONDS_PER_SECOND}"
             io_logger.warning(f"Map file unspecified. Map will be saved to {name} file")
-        settings = MapSaveSettings(name=name, occupied_thresh=occupied, free_thresh=free, image_format=kind, mode=mode)
+        settings = MapSaveSettings(
+            name=name, occupied_thresh=occupied, free_thresh=free, image_format=image_format, mode=mode
+        )
         problem = self._write(message, settings, io_logger)
         if problem is not None:
             logger.error(f"Failed to save the map: {problem}")
@@ -122,8 +124,8 @@ class _MapReceiver:
 
         qos = LATCHED_QOS if self._is_latched else QoSProfile(depth=10)
         group = ReentrantCallbackGroup()  # The service callback that waits occupies the node's default group.
-        kind = get_message("nav_msgs/msg/OccupancyGrid")
-        subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)
+        map_class = get_message("nav_msgs/msg/OccupancyGrid")
+        subscription = node.create_subscription(map_class, topic, receive, qos, callback_group=group)
         try:
             if not await wait_for_future(node, received, self._timeout):
                 publisher_count = node.count_publishers(topic)

@@ -41,9 +41,9 @@ class MapServerNode(ManagedNode):
         name = self.get_name()
         self.register(self.create_service(get_service("nav_msgs/srv/GetMap"), f"{name}/map", self._on_get))
         self.register(self.create_service(get_service("nav2_msgs/srv/LoadMap"), f"{name}/load_map", self._on_load))
-        kind = get_message("nav_msgs/msg/OccupancyGrid")
+        map_class = get_message("nav_msgs/msg/OccupancyGrid")
         self._publisher = self.register(
-            self.create_publisher(kind, self.get_parameter("topic_name").value, LATCHED_QOS)
+            self.create_publisher(map_class, self.get_parameter("topic_name").value, LATCHED_QOS)
         )
 
     def activate(self) -> None:

@@ -83,8 +83,8 @@ class PlannerNode(ManagedNode):
         self._path_publisher = self.register(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
         self._create_action_server("ComputePathToPose", "compute_path_to_pose", self._plan_to_pose)
         self._create_action_server("ComputePathThroughPoses", "compute_path_through_poses", self._plan_through_poses)
-        kind = get_service("nav2_msgs/srv/IsPathValid")
-        self.register(self.create_service(kind, "is_path_valid", self._on_is_path_valid))
+        service_class = get_service("nav2_msgs/srv/IsPathValid")
+        self.register(self.create_service(service_class, "is_path_valid", self._on_is_path_valid))
 
     def activate(self) -> None:
         """Activate the costmap, and accept goals."""
@@ -129,7 +129,7 @@ class PlannerNode(ManagedNode):
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
-    def _create_action_server(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
+    def _create_action_server(self, action_type: str, name: str, work: Callable[[Any], Work]) -> None:
         """Create an action server that plans paths.
 
         `work` returns the generator that computes the path for a request.
@@ -145,7 +145,7 @@ class PlannerNode(ManagedNode):
 
             self._work[name] = SlicedWork(self, work(goal.request), lambda: not server.is_canceled, on_done)
 
-        server = self.register(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin))
+        server = self.register(GoalServer(self, f"nav2_msgs/action/{action_type}", name, begin))
 
     def _finish(self, server: GoalServer, poses: Any, error: Exception | None, began_ns: int) -> None:
         if isinstance(error, GoalError):

@@ -17,7 +17,7 @@ from linkwright.navigation.nodes.managed import ManagedNode
 Step = Generator[None, None, Any]
 """A generator that does one step of work in each cycle."""
 
-_PERIOD = 0.05
+_CYCLE_PERIOD_S = 0.05
 _SERVER_TIMEOUT = 5.0
 """The maximum time to wait for a response of another server, in seconds."""
 
@@ -46,7 +46,7 @@ class StepNode(ManagedNode):
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal replaced it")
         self._server, self._work = server, work
-        self.begin_cycles(_PERIOD, self._run_cycle)
+        self.begin_cycles(_CYCLE_PERIOD_S, self._run_cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish feedback for the active goal.

@@ -75,14 +75,16 @@ class _ManagedSmoother(ManagedNode):
         is_stamped = self._is_stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", is_stamped)
         commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
-        for kind in velocity_types(self, "cmd_vel", is_stamped):
+        for message_type in velocity_types(self, "cmd_vel", is_stamped):
             subscription: Subscription[Any] = self.create_subscription(
-                kind, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
+                message_type, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
             )
             commander.watch(self.register(subscription))
-        if self._value("feedback") == "CLOSED_LOOP":
+        if self._get_parameter_value("feedback") == "CLOSED_LOOP":
             odometry = get_message("nav_msgs/msg/Odometry")
-            self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+            self.register(
+                self.create_subscription(odometry, self._get_parameter_value("odom_topic"), self._on_odometry, _DEPTH)
+            )
 
     def activate(self) -> None:
         """Start publishing."""
@@ -102,16 +104,16 @@ class _ManagedSmoother(ManagedNode):
             self._output.close()
             self._output = None
 
-    def _value(self, name: str) -> Any:
+    def _get_parameter_value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
     def _read_parameters(self) -> None:
-        self._frequency: float = self._value("smoothing_frequency")
-        self._keeps_direction: bool = self._value("scale_velocities")
-        self._uses_feedback: bool = self._value("feedback") == "CLOSED_LOOP"
-        self._timeout: float = self._value("velocity_timeout")
-        self._odometry_window: float = self._value("odom_duration")
-        columns = [list(self._value(name)) for name in _LIMITS]
+        self._frequency: float = self._get_parameter_value("smoothing_frequency")
+        self._keeps_direction: bool = self._get_parameter_value("scale_velocities")
+        self._uses_feedback: bool = self._get_parameter_value("feedback") == "CLOSED_LOOP"
+        self._timeout: float = self._get_parameter_value("velocity_timeout")
+        self._odometry_window: float = self._get_parameter_value("odom_duration")
+        columns = [list(self._get_parameter_value(name)) for name in _LIMITS]
         if len(columns[0]) == len(_PLANAR):  # Three entries are limits for x, y and yaw.
             columns = [_expand_to_axes(column) for column in columns]
         self._limits = [
@@ -138,7 +140,7 @@ class _ManagedSmoother(ManagedNode):
         """Return an error message if a change would make a parameter invalid, and None otherwise."""
 
         def value(name: str) -> Any:
-            return changed.get(name, self._value(name))
+            return changed.get(name, self._get_parameter_value(name))
 
         if not value("smoothing_frequency") > 0.0:
             return phrase("smoothing_frequency must be more than 0")
@@ -163,7 +165,7 @@ class _ManagedSmoother(ManagedNode):
     def _receive(self, message: Any) -> None:
         is_stamped = hasattr(message, "twist")
         twist = message.twist if is_stamped else message
-        values = _values(twist)
+        values = _list_velocities(twist)
         if not all(map(isfinite, values)):
             self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
             return
@@ -196,7 +198,7 @@ class _ManagedSmoother(ManagedNode):
 
     def _on_odometry(self, message: Any) -> None:
         now_ns = self.get_clock().now().nanoseconds
-        self._measured_velocities.append((now_ns, _values(message.twist.twist)))
+        self._measured_velocities.append((now_ns, _list_velocities(message.twist.twist)))
         while now_ns - self._measured_velocities[0][0] > self._odometry_window * NANOSECONDS_PER_SECOND:
             self._measured_velocities.popleft()
 
@@ -231,7 +233,7 @@ class VelocitySmoother(ManagedServer):
     DEFAULT_NAME = "velocity_smoother"
 
 
-def _values(twist: Any) -> list[float]:
+def _list_velocities(twist: Any) -> list[float]:
     return [float(getattr(getattr(twist, vector), axis)) for vector, axis in _AXES]
 
 

@@ -38,20 +38,20 @@ class WaypointNode(StepNode):
             LinkwrightError: a parameter has the wrong type.
         """
         task = str(self.get_parameter("waypoint_task_executor_plugin").value)
-        kind = get_plugin_type(self, task, {"wait_at_waypoint": _WAIT_TASK})
+        plugin_type = get_plugin_type(self, task, {"wait_at_waypoint": _WAIT_TASK})
         self._pause_seconds = 0.0
-        if kind == _WAIT_TASK:
+        if plugin_type == _WAIT_TASK:
             is_enabled = bool(get_or_declare(self, f"{task}.enabled", True))
             self._pause_seconds = (
                 int(get_or_declare(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_enabled else 0.0
             )
         else:
-            self.get_logger().warning(f"{task}: {kind} is not supported; no task runs at waypoints")
+            self.get_logger().warning(f"{task}: {plugin_type} is not supported; no task runs at waypoints")
         self._navigation_client = self.register(
             ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose")
         )
-        kind = "nav2_msgs/action/FollowWaypoints"
-        self._waypoint_server = self.register(GoalServer(self, kind, "follow_waypoints", self._start))
+        action_type = "nav2_msgs/action/FollowWaypoints"
+        self._waypoint_server = self.register(GoalServer(self, action_type, "follow_waypoints", self._start))
 
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish the index of the current waypoint as feedback for the goal."""

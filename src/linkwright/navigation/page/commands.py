@@ -140,8 +140,8 @@ class _Watch:
             for subscription in self._subscriptions:
                 self._node.destroy_subscription(subscription)
 
-    def _create_client(self, kind: str, manager: str, service: str) -> Client[Any, Any]:
-        return self._node.create_client(get_service(kind), f"lifecycle_manager_{manager}/{service}")
+    def _create_client(self, service_type: str, manager: str, service: str) -> Client[Any, Any]:
+        return self._node.create_client(get_service(service_type), f"lifecycle_manager_{manager}/{service}")
 
     def _update_state(self, **fields: Any) -> None:
         old_fields = {name: getattr(self.state, name) for name in NavigationState.__struct_fields__}

@@ -63,8 +63,8 @@ class GoalOutcomeFeature(PageFeature):
             self.context.node.destroy_subscription(subscription)
         self._subscriptions.clear()
 
-    def _subscribe(self, kind: str, topic: str, callback: Callable[[Any], None], qos: QoSProfile) -> Any:
-        return self.context.node.create_subscription(kind, topic, callback, qos)
+    def _subscribe(self, message_type: str, topic: str, callback: Callable[[Any], None], qos: QoSProfile) -> Any:
+        return self.context.node.create_subscription(message_type, topic, callback, qos)
 
     def _on_status(self, message: Any) -> None:
         if not message.status_list:

@@ -17,6 +17,7 @@ Position = tuple[float, float]
 """A position as row and column, in cells. The middle of cell (0, 0) is (0.5, 0.5)."""
 
 _STEP_CELLS = 0.5
+"""The length of a step along the gradient, in cells."""
 _MAX_STEPS_IN_CELL = 4
 _STEPS_BETWEEN_YIELDS = 64
 _MIN_SLOPE = 1e-6

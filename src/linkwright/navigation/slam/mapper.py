@@ -21,18 +21,20 @@ from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
 from linkwright.navigation.slam.steps import Steps
 
-_TRAVEL_SHARE = 0.8
-"""The share of the minimum travel distance after which a scan is processed, because odometry may be wrong."""
-_MIN_INLIERS = 0.25
-_MIN_LINK_INLIERS = 0.4
+_TRAVEL_FRACTION = 0.8
+"""The fraction of the minimum travel distance after which a scan is processed, because odometry may be wrong."""
+_MIN_INLIER_FRACTION = 0.25
+"""The minimum fraction of a scan's points that must fit for a match."""
+_MIN_LINK_INLIER_FRACTION = 0.4
 """The minimum shares of points on known walls, for any match and for a match with an earlier pass."""
-_MAX_CONTRADICTION = 0.15
+_MAX_CONTRADICTING_FRACTION = 0.15
+"""The maximum contradiction of two linked scans, as a fraction of the points."""
 _MAX_LINK_VARIANCE = 0.01
 """A link to an earlier pass closes the loop if the variance of its position is below this, in square meters."""
 _MAX_LOOP_CANDIDATES = 3
-_REDRAW_SHARE = 0.2
-"""A scan is redrawn if its points at `_FAR_POINT` moved by at least this share of a cell."""
-_FAR_POINT = 5.0
+_REDRAW_FRACTION = 0.2
+"""A scan is redrawn if its points at `_FAR_POINT_DISTANCE_M` moved by at least this fraction of a cell."""
+_FAR_POINT_DISTANCE_M = 5.0
 _MIN_INFORMATION = 1e-3
 """Information added in all directions, so that the matrix can be inverted."""
 
@@ -93,8 +95,8 @@ class Mapper:
 
         The new scans are not drawn yet.
         """
-        for number in range(len(self.scans)):
-            self.occupancy.erase(number)
+        for index in range(len(self.scans)):
+            self.occupancy.erase(index)
         self.graph, self.scans, self.odometry = graph, scans, odometry
         self.begin_session(None)
 
@@ -131,7 +133,7 @@ class Mapper:
             return False
         motion = relative_pose(pose, odometry)
         return bool(
-            np.hypot(motion[0], motion[1]) >= _TRAVEL_SHARE * self.settings.minimum_travel_distance
+            np.hypot(motion[0], motion[1]) >= _TRAVEL_FRACTION * self.settings.minimum_travel_distance
             or abs(motion[2]) >= self.settings.minimum_travel_heading
         )
 
@@ -200,14 +202,14 @@ class Mapper:
 
         Each scan is a step.
         """
-        tolerance = _REDRAW_SHARE * self.occupancy.resolution
-        for number, scan in enumerate(self.scans):
-            pose, drawn_pose = self.graph.poses[number], self.occupancy.drawn_pose(number)
+        tolerance = _REDRAW_FRACTION * self.occupancy.resolution
+        for index, scan in enumerate(self.scans):
+            pose, drawn_pose = self.graph.poses[index], self.occupancy.drawn_pose(index)
             if drawn_pose is not None:
                 change = relative_pose(drawn_pose, pose)
-                if np.hypot(change[0], change[1]) + _FAR_POINT * abs(change[2]) < tolerance:
+                if np.hypot(change[0], change[1]) + _FAR_POINT_DISTANCE_M * abs(change[2]) < tolerance:
                     continue
-            self.occupancy.draw(number, scan, pose)
+            self.occupancy.draw(index, scan, pose)
             yield
 
     def _add(self, scan: PlanarScan, odometry: FloatArray, pose: FloatArray) -> int:
@@ -260,9 +262,9 @@ class Mapper:
         if best_match is None or best_match.response < self.settings.link_match_minimum_response_fine:
             return None
         offset = np.abs(best_match.pose - guess)[:2].max()
-        return best_match if best_match.inliers > _MIN_INLIERS and offset <= search.dimension else None
+        return best_match if best_match.inliers > _MIN_INLIER_FRACTION and offset <= search.dimension else None
 
-    def _link(self, number: int) -> Steps[tuple[int, int]]:
+    def _link(self, node: int) -> Steps[tuple[int, int]]:
         """Link a new node to nodes of earlier passes, and close loops.
 
         Returns:
@@ -270,9 +272,9 @@ class Mapper:
         """
         settings, links, loops = self.settings, 0, 0
         linked_nodes: set[int] = set()
-        for chain in self._chains(number, settings.link_scan_maximum_distance):
+        for chain in self._chains(node, settings.link_scan_maximum_distance):
             min_response = settings.link_match_minimum_response_fine
-            best_match = yield from self._connect(number, chain, settings.matching, min_response)
+            best_match = yield from self._connect(node, chain, settings.matching, min_response)
             if best_match is not None:
                 links += 1
                 if (
@@ -283,21 +285,21 @@ class Mapper:
             return links, 0
         candidates = [
             chain
-            for chain in self._chains(number, settings.loop_search_maximum_distance)
+            for chain in self._chains(node, settings.loop_search_maximum_distance)
             if len(chain) >= settings.loop_match_minimum_chain_size and linked_nodes.isdisjoint(chain)
         ]
         for chain in candidates[:_MAX_LOOP_CANDIDATES]:
-            if (yield from self._close_loop(number, chain)):
+            if (yield from self._close_loop(node, chain)):
                 loops += 1
         return links, loops
 
-    def _chains(self, number: int, distance: float) -> list[list[int]]:
+    def _chains(self, node: int, distance: float) -> list[list[int]]:
         """Return the chains of consecutive nodes within a distance of a node, nearest first.
 
         The latest nodes before this node are left out.
         """
-        distances = self._distances(self.graph.poses[number])
-        end = number - self.settings.scan_buffer_size
+        distances = self._distances(self.graph.poses[node])
+        end = node - self.settings.scan_buffer_size
         chains: list[list[int]] = []
         for index in np.flatnonzero(distances[: max(end, 0)] <= distance).tolist():
             if chains and chains[-1][-1] == index - 1:
@@ -306,39 +308,39 @@ class Mapper:
                 chains.append([index])
         return sorted(chains, key=lambda chain: (float(distances[chain].min()), chain[0]))
 
-    def _close_loop(self, number: int, chain: list[int]) -> Steps[bool]:
+    def _close_loop(self, node: int, chain: list[int]) -> Steps[bool]:
         """Try to close a loop with a chain of nodes, and return whether an edge was added."""
         settings = self.settings
-        guess = self.graph.poses[number]
-        best_match = yield from self._match(chain, self.scans[number], guess, settings.loop)
+        guess = self.graph.poses[node]
+        best_match = yield from self._match(chain, self.scans[node], guess, settings.loop)
         if best_match is None or best_match.response < settings.loop_match_minimum_response_coarse:
             return False
         if _worst_variance(best_match) > settings.loop_match_maximum_variance_coarse:
             return False
         min_response = settings.loop_match_minimum_response_fine
         return (
-            yield from self._connect(number, chain, settings.matching, min_response, around=best_match.pose)
+            yield from self._connect(node, chain, settings.matching, min_response, around=best_match.pose)
         ) is not None
 
     def _connect(
-        self, number: int, chain: list[int], search: Search, min_response: float, *, around: FloatArray | None = None
+        self, node: int, chain: list[int], search: Search, min_response: float, *, around: FloatArray | None = None
     ) -> Steps[Match | None]:
         """Match a node against a chain of nodes, add an edge, and return the match.
 
         Returns None and adds no edge if the match is not certain.
         """
-        scan = self.scans[number]
-        guess = self.graph.poses[number] if around is None else around
+        scan = self.scans[node]
+        guess = self.graph.poses[node] if around is None else around
         nodes = sorted(chain, key=lambda index: float(self._distances(guess)[index]))[: self.settings.scan_buffer_size]
         best_match = yield from self._match(nodes, scan, guess, search)
-        if best_match is None or best_match.response < min_response or best_match.inliers < _MIN_LINK_INLIERS:
+        if best_match is None or best_match.response < min_response or best_match.inliers < _MIN_LINK_INLIER_FRACTION:
             return None
         nearest = self._nearest_node(nodes, best_match.pose)
         pose = self.graph.poses[nearest]
-        if contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTION:
+        if contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTING_FRACTION:
             return None
         information = best_match.information + _MIN_INFORMATION * np.eye(3)
-        self.graph.add_edge(nearest, number, relative_pose(pose, best_match.pose), information, is_doubtful=True)
+        self.graph.add_edge(nearest, node, relative_pose(pose, best_match.pose), information, is_doubtful=True)
         return best_match
 
 

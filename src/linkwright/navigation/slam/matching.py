@@ -22,10 +22,10 @@ _FIRST_MAX_DISTANCE, _LAST_MAX_DISTANCE = 0.30, 0.10
 _SCALE = 0.03
 """The scale of the Cauchy weights, in meters: larger distances have less influence."""
 _CONVERGENCE_STEP = 1e-5
-_MIN_INFORMATION_SHARE = 0.02
-"""The minimum information per point, as a share of the maximum, for a direction to be corrected."""
-_INDEPENDENT_SHARE = 0.1
-"""The share of the points that counts as independent, because the points of one scan have common errors."""
+_MIN_INFORMATION_FRACTION = 0.02
+"""The minimum information per point, as a fraction of the maximum, for a direction to be corrected."""
+_INDEPENDENT_FRACTION = 0.1
+"""The fraction of the points that counts as independent, because the points of one scan have common errors."""
 _MIN_ERROR = 0.01
 _EXPANSIONS = (0.349, 0.698, 1.047)
 """Angles added to the window if nothing fits and ``use_response_expansion`` is set, in radians, as in Karto."""
@@ -114,7 +114,7 @@ def _refine(reference: Reference, scan: PlanarScan, guess: FloatArray, start: Fl
     unscaled = projection @ hessian @ projection / np.outer(scale, scale)
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     axes = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)))
-    information: FloatArray = axes.T @ unscaled @ axes * (_INDEPENDENT_SHARE / max(error, _MIN_ERROR) ** 2)
+    information: FloatArray = axes.T @ unscaled @ axes * (_INDEPENDENT_FRACTION / max(error, _MIN_ERROR) ** 2)
     pose[2] = (pose[2] + pi) % (2 * pi) - pi
     return Match(pose, response, information, inliers, error)
 
@@ -122,7 +122,7 @@ def _refine(reference: Reference, scan: PlanarScan, guess: FloatArray, start: Fl
 def _constrained_projection(hessian: FloatArray, points: int) -> FloatArray:
     """Return the projection onto the directions that the points constrain, of shape (3, 3)."""
     values, vectors = np.linalg.eigh(hessian)
-    constrained = vectors[:, values > _MIN_INFORMATION_SHARE * points]
+    constrained = vectors[:, values > _MIN_INFORMATION_FRACTION * points]
     result: FloatArray = constrained @ constrained.T
     return result
 

@@ -53,28 +53,28 @@ class OccupancyMap:
         self._hits: NDArray[np.int32] = np.zeros((0, 0), dtype=np.int32)
         self._traces: dict[int, _Trace] = {}
 
-    def draw(self, number: int, scan: PlanarScan, pose: FloatArray) -> None:
-        """Add a scan at a pose of the robot, in place of any scan with the same number.
+    def draw(self, scan_index: int, scan: PlanarScan, pose: FloatArray) -> None:
+        """Add a scan at a pose of the robot, in place of any scan with the same index.
 
         `pose` has shape (3,).
         """
-        self.erase(number)
+        self.erase(scan_index)
         trace = self._trace_scan(scan, pose)
         if not len(trace.cells):
             return
         self._grow_to_contain(trace.cells)
-        self._traces[number] = trace
+        self._traces[scan_index] = trace
         self._add_counts(trace, 1)
 
-    def erase(self, number: int) -> None:
+    def erase(self, scan_index: int) -> None:
         """Remove a scan if it was added."""
-        trace = self._traces.pop(number, None)
+        trace = self._traces.pop(scan_index, None)
         if trace is not None:
             self._add_counts(trace, -1)
 
-    def drawn_pose(self, number: int) -> FloatArray | None:
+    def drawn_pose(self, scan_index: int) -> FloatArray | None:
         """Return the pose at which a scan was added, or None if the scan is not in the map."""
-        trace = self._traces.get(number)
+        trace = self._traces.get(scan_index)
         return None if trace is None else trace.pose
 
     def grid(self) -> Grid | None:

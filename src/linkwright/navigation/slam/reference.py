@@ -11,11 +11,12 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.slam.poses import FloatArray, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
-_THINNING_CELL = 0.05
+_THINNING_CELL_M = 0.05
 _NEIGHBORS = 6
 _MAX_NEIGHBOR_DISTANCE = 0.5
 """The maximum distance of a point's neighbors for its wall to have a direction, in meters."""
 _MIN_LIKELIHOOD = 0.01
+"""Smaller likelihoods count as 0."""
 
 
 class Reference:
@@ -40,7 +41,7 @@ class Reference:
             self._average_by_cell(points, sensors)
 
     def _average_by_cell(self, points: FloatArray, sensors: FloatArray) -> None:
-        cells = np.floor((points - points.min(axis=0)) / _THINNING_CELL).astype(np.int64)
+        cells = np.floor((points - points.min(axis=0)) / _THINNING_CELL_M).astype(np.int64)
         _, index = np.unique(cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1], return_inverse=True)
         counts = np.bincount(index)
 
@@ -108,16 +109,16 @@ class LikelihoodField:
         finest_level[finest_level < _MIN_LIKELIHOOD] = 0.0
         self._levels: list[NDArray[np.float32]] = [finest_level]
 
-    def level(self, number: int) -> tuple[NDArray[np.float32], int]:
-        """Return the grid of maxima over blocks of 2^number x 2^number cells.
+    def level(self, exponent: int) -> tuple[NDArray[np.float32], int]:
+        """Return the grid of maxima over blocks of 2^exponent x 2^exponent cells.
 
         Returns:
             The grid and an offset n: cell (row + n, column + n) is the maximum of the block that begins at (row,
                 column).
         """
-        while len(self._levels) <= number:
+        while len(self._levels) <= exponent:
             finer_level, step = self._levels[-1], 1 << (len(self._levels) - 1)
             rows = np.maximum(np.pad(finer_level, ((step, 0), (0, 0))), np.pad(finer_level, ((0, step), (0, 0))))
             coarser_level = np.maximum(np.pad(rows, ((0, 0), (step, 0))), np.pad(rows, ((0, 0), (0, step))))
             self._levels.append(np.ascontiguousarray(coarser_level))
-        return self._levels[number], (1 << number) - 1
+        return self._levels[exponent], (1 << exponent) - 1

@@ -80,24 +80,24 @@ class TopicTool(SingleNode, ABC):
         if not sources:
             self._stop()
             return
-        kind = sources[0].topic_type
+        message_type = sources[0].topic_type
         qos = self._matching_profile([source.qos_profile for source in sources])
-        if not self._matches(self._publisher, self._output, kind, qos):
+        if not self._matches(self._publisher, self._output, message_type, qos):
             self._stop()
-            self._publisher = self._node.create_publisher(kind, self._output, qos)
-        if not self._matches(self._subscription, self._input, kind, qos):
+            self._publisher = self._node.create_publisher(message_type, self._output, qos)
+        if not self._matches(self._subscription, self._input, message_type, qos):
             self._unsubscribe()
         if self._lazy and not (self._publisher and self._publisher.get_subscription_count()):
             self._unsubscribe()
         elif self._subscription is None:
-            self._subscription = self._create_subscription(kind, qos)
+            self._subscription = self._create_subscription(message_type, qos)
 
-    def _create_subscription(self, kind: str, qos: QoSProfile) -> Subscription[Any]:
-        if kind not in VELOCITIES:
-            return self._node.create_subscription(kind, self._input, self._receive, qos)
+    def _create_subscription(self, message_type: str, qos: QoSProfile) -> Subscription[Any]:
+        if message_type not in VELOCITIES:
+            return self._node.create_subscription(message_type, self._input, self._receive, qos)
         commander = Commander(self._stop_output, DriverWatch.of(self._node))
         callback = commander.tracking_callback(self._receive)
-        subscription: Subscription[Any] = self._node.create_subscription(kind, self._input, callback, qos)
+        subscription: Subscription[Any] = self._node.create_subscription(message_type, self._input, callback, qos)
         commander.watch(subscription)
         return subscription
 
@@ -125,11 +125,11 @@ class TopicTool(SingleNode, ABC):
         return qos_match.profile
 
     def _matches(
-        self, endpoint: Publisher[Any] | Subscription[Any] | None, topic: str, kind: str, qos: QoSProfile
+        self, endpoint: Publisher[Any] | Subscription[Any] | None, topic: str, message_type: str, qos: QoSProfile
     ) -> bool:
         return (
             endpoint is not None
-            and endpoint.type_name == kind
+            and endpoint.type_name == message_type
             and endpoint.name == self._node.resolve_topic_name(topic)
             and endpoint.qos_profile == qos
         )

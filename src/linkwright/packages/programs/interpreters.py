@@ -13,7 +13,7 @@ from pathlib import Path
 from linkwright.loading.deferred import lazy_pattern
 
 _VERSION = lazy_pattern(r"python(\d+)\.(\d+)")
-_QUERY_TIMEOUT = 5.0
+_QUERY_TIMEOUT_S = 5.0
 
 
 def needs_our_interpreter(path: Path) -> bool:
@@ -57,7 +57,11 @@ def _python_version(interpreter: str) -> tuple[int, ...] | None:
     program = "import sys; print(*sys.version_info[:2])"
     try:
         completed = subprocess.run(  # noqa: S603 - the interpreter that the user's script names
-            [interpreter, "-I", "-S", "-c", program], capture_output=True, timeout=_QUERY_TIMEOUT, check=True, text=True
+            [interpreter, "-I", "-S", "-c", program],
+            capture_output=True,
+            timeout=_QUERY_TIMEOUT_S,
+            check=True,
+            text=True,
         )
         return tuple(int(word) for word in completed.stdout.split())
     except (OSError, subprocess.SubprocessError, ValueError):

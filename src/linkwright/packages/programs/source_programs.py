@@ -29,7 +29,7 @@ from linkwright.packages.readers.installed import ENTRY_POINT_LINE, PROGRAM_GROU
 _PYTHON_PACKAGE = lazy_pattern(r"^\s*ament_python_install_package\s*\(", re.MULTILINE | re.IGNORECASE)
 BUILD_FILES = ("setup.py", "setup.cfg", "pyproject.toml", "CMakeLists.txt")
 NON_PROGRAM_MODULES = frozenset({"setup", "conftest", "test", "tests"})
-_SETUP_TIMEOUT = 10.0
+_SETUP_TIMEOUT_S = 10.0
 _SETUP_RUNNER = """
 import json, runpy, sys, types
 def setup(**given):
@@ -152,7 +152,7 @@ def _run_setup_py(folder: Path) -> tuple[list[str], list[str]]:
             [sys.executable, "-c", _SETUP_RUNNER],
             cwd=folder,
             capture_output=True,
-            timeout=_SETUP_TIMEOUT,
+            timeout=_SETUP_TIMEOUT_S,
             check=True,
             text=True,
         )

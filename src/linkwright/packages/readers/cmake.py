@@ -215,7 +215,7 @@ class CMakeFile:
         Raises:
             FileNotFoundError: a file or folder does not exist; the exception contains its name.
         """
-        return self._files(package, None)
+        return self._list_files(package, None)
 
     def moved_files(self, package: Path, share: str) -> Iterator[InstalledFile]:
         """Yield the installed files whose paths in the share folder and in the package differ.
@@ -227,23 +227,23 @@ class CMakeFile:
             package: the package's folder.
             share: the share folder, relative to the prefix.
         """
-        return self._files(package, PurePosixPath(share))
+        return self._list_files(package, PurePosixPath(share))
 
-    def _files(self, package: Path, share: PurePosixPath | None) -> Iterator[InstalledFile]:
+    def _list_files(self, package: Path, share: PurePosixPath | None) -> Iterator[InstalledFile]:
         for file in self._generated_files.values():
             if share is None or file.content is not None or (package / file.source).is_file():
                 yield file
         for rule in self.copies:
             if rule.destination is not None:
                 for item in rule.items:
-                    yield from self._copied_files(rule, item.text, rule.destination, package, share)
+                    yield from self._list_copied_files(rule, item.text, rule.destination, package, share)
 
-    def _copied_files(
+    def _list_copied_files(
         self, rule: CopyRule, item: str, destination: str, package: Path, share: PurePosixPath | None
     ) -> Iterator[InstalledFile]:
         target, source = PurePosixPath(destination), PurePosixPath(item)
         if item.startswith(BUILD):
-            yield from self._copied_build_files(rule, item, target)
+            yield from self._list_copied_build_files(rule, item, target)
             return
         target_file = target / (rule.new_name or source.name)
         if share is not None and rule.kind != "DIRECTORY" and target_file == share / source:
@@ -264,7 +264,7 @@ class CMakeFile:
             if file.is_file() and rule.copies(item, relative_path):
                 yield InstalledFile((source / relative_path).as_posix(), str(target_folder / relative_path))
 
-    def _copied_build_files(self, rule: CopyRule, item: str, target: PurePosixPath) -> Iterator[InstalledFile]:
+    def _list_copied_build_files(self, rule: CopyRule, item: str, target: PurePosixPath) -> Iterator[InstalledFile]:
         target_folder = target if item.endswith("/") else target / PurePosixPath(item).name
         for path, file in self._generated.items():
             if path == item:

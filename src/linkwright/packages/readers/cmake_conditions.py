@@ -145,7 +145,7 @@ class Condition:
             return None
         if matches:
             groups = [matches[0][0], *matches[0][1]]
-            self.variables.update({f"CMAKE_MATCH_{number}": group for number, group in enumerate(groups)})
+            self.variables.update({f"CMAKE_MATCH_{index}": group for index, group in enumerate(groups)})
         return bool(matches)
 
     def _value(self, word: Word) -> str:

@@ -259,7 +259,7 @@ class CMakeProgram:
                 yield from self._run_once(body)
 
     def _run_foreach(self, words: list[str], body: list[Statement]) -> Iterator[Command]:
-        loop = self._loop(words)
+        loop = self._read_loop(words)
         if loop is None:
             self.unknown.append("foreach")
             return
@@ -279,7 +279,7 @@ class CMakeProgram:
         with self._leavable_block("continue"):
             yield from self._run_block(body)
 
-    def _loop(self, words: list[str]) -> tuple[list[str], list[tuple[str, ...]]] | None:
+    def _read_loop(self, words: list[str]) -> tuple[list[str], list[tuple[str, ...]]] | None:
         """Return the variables that a ``foreach`` loop sets, and their values in each iteration.
 
         The result is None if the values are not known.
@@ -295,10 +295,10 @@ class CMakeProgram:
             if not rounds:
                 return None
         else:
-            names, rounds = words[:1], [(item,) for item in self._loop_items(words[1:])]
+            names, rounds = words[:1], [(item,) for item in self._read_loop_items(words[1:])]
         return None if any(is_open(item) for values in rounds for item in values) else (names, rounds)
 
-    def _loop_items(self, words: Sequence[str]) -> list[str]:
+    def _read_loop_items(self, words: Sequence[str]) -> list[str]:
         items, kind = list[str](), "ITEMS"
         for word in words[1:] if words[:1] == ["IN"] else words:
             if words[0] == "IN" and word in ("LISTS", "ITEMS"):
@@ -337,7 +337,7 @@ class CMakeProgram:
             return
         outer_variables = dict(self.variables)
         bindings = dict(zip(routine.parameters, words, strict=False))
-        bindings |= {f"ARGV{number}": word for number, word in enumerate(words)}
+        bindings |= {f"ARGV{index}": word for index, word in enumerate(words)}
         bindings |= {
             "ARGV": ";".join(words),
             "ARGN": ";".join(words[len(routine.parameters) :]),
@@ -414,7 +414,7 @@ class CMakeProgram:
         elif name == "list" and len(words) > 1:
             self._change_list(words)
         elif name == "string" and len(words) > 1:
-            for target, value in string_command(words, self._value).items():
+            for target, value in string_command(words, self._get_variable).items():
                 self._set(target, value)
         elif name == "math" and len(words) > 2:
             self._set(words[1], evaluate_math(words[2]))
@@ -437,7 +437,7 @@ class CMakeProgram:
         else:
             self._set(name, ";".join(values))
 
-    def _value(self, name: str) -> str:
+    def _get_variable(self, name: str) -> str:
         return self.variables.get(name, "")
 
     def _set(self, name: str, value: str) -> None:
@@ -445,7 +445,7 @@ class CMakeProgram:
         self.variables[name] = value if is_certain and not is_open(value) else UNKNOWN
 
     def _change_list(self, words: list[str]) -> None:
-        for target, value in list_command(words[0], words[1:], self._value).items():
+        for target, value in list_command(words[0], words[1:], self._get_variable).items():
             if words[0] in ("APPEND", "PREPEND"):
                 self.variables[target] = value  # even if the command is uncertain, so that a possible item is added
             else:
@@ -480,7 +480,7 @@ class CMakeProgram:
 
     def _parse_arguments(self, words: list[str]) -> None:
         if words[0] == "PARSE_ARGV":
-            arguments = items_of(self._value("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
+            arguments = items_of(self._get_variable("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
             words = [*words[2:6], *arguments]
         prefix, options, one_value_names, multi_value_names, *arguments = words
         kinds = {
@@ -521,7 +521,7 @@ class CMakeProgram:
             return value
 
         for _ in range(_MAX_DEPTH if token.has_variables else 0):  # nested references: ${${NAME}_FILES}
-            substituted = _ENVIRONMENT.sub(lambda match: _environment_value(match[1]) or match[0], text)
+            substituted = _ENVIRONMENT.sub(lambda match: _get_environment_variable(match[1]) or match[0], text)
             substituted = _VARIABLE.sub(value, substituted)
             if substituted == text:
                 break
@@ -529,7 +529,7 @@ class CMakeProgram:
         return text
 
 
-def _environment_value(name: str) -> str | None:
+def _get_environment_variable(name: str) -> str | None:
     """Return the value of one of ROS's environment variables, or None for any other variable."""
     return os.environ.get(name, ROS_VARIABLES[name]) if name in ROS_VARIABLES else None
 

@@ -18,7 +18,7 @@ from linkwright.packages.readers.cmake_syntax import is_open
 UNKNOWN = "${}"
 """The value that represents an unknown value of a variable."""
 
-_SEARCH_TIMEOUT = 0.2
+_SEARCH_TIMEOUT_S = 0.2
 _MAX_NUMBER = 10**15
 _OPERATORS: dict[type[ast.operator], Callable[[int, int], int]] = {
     ast.Add: operator.add,
@@ -162,7 +162,7 @@ def _find_matches(pattern: str, text: str) -> list[tuple[str, list[str]]]:
 
 def _replace_regex(pattern: str, replacement: str, text: str) -> str:
     try:
-        return regex.sub(pattern, regex.sub(r"\\(\d)", r"\\g<\1>", replacement), text, timeout=_SEARCH_TIMEOUT)
+        return regex.sub(pattern, regex.sub(r"\\(\d)", r"\\g<\1>", replacement), text, timeout=_SEARCH_TIMEOUT_S)
     except (regex.error, TimeoutError) as error:
         raise _NotKnownError from error
 

@@ -53,7 +53,7 @@ class LaunchFile:
     Attributes:
         path: the path relative to the package.
         error: the syntax error, or None if the file is valid Python.
-        python: the parsed file, or None.
+        python_file: the parsed file, or None.
         has_function: whether the file may define ``generate_launch_description``.
         is_test: whether launch_testing or pytest runs the file; such a file requires other functions.
         nodes: the nodes that the file starts.
@@ -66,7 +66,7 @@ class LaunchFile:
     source: SourceText
     path: str
     error: SyntaxProblem | None = None
-    python: PythonFile | None = None
+    python_file: PythonFile | None = None
     has_function: bool = False
     is_test: bool = False
     nodes: list[StartedNode] = field(default_factory=list)
@@ -90,31 +90,31 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     """
     facts = LaunchFile(source, path)
     try:
-        python = facts.python = PythonFile(source)
+        python_file = facts.python_file = PythonFile(source)
     except (SyntaxError, ValueError) as error:
         facts.error = syntax_problem(source, error)
         return facts
-    facts.has_function = any(map(_may_define_function, python.tree.body))
-    _read_imports(python, facts)
-    facts.is_test = any(map(_defines_test, python.tree.body)) or any(
+    facts.has_function = any(map(_may_define_function, python_file.tree.body))
+    _read_imports(python_file, facts)
+    facts.is_test = any(map(_defines_test, python_file.tree.body)) or any(
         package in _TEST_PACKAGES for package, _ in facts.imports
     )
-    for call in python.calls("Node", "LifecycleNode", "ComposableNode"):
+    for call in python_file.calls("Node", "LifecycleNode", "ComposableNode"):
         package, executable = argument_of(call, "package"), argument_of(call, "executable")
-        facts.nodes.append(StartedNode(_place_of(python, package), _place_of(python, executable)))
-    for call in python.calls("get_package_share_directory", "get_package_share_path", "FindPackageShare"):
+        facts.nodes.append(StartedNode(_place_of(python_file, package), _place_of(python_file, executable)))
+    for call in python_file.calls("get_package_share_directory", "get_package_share_path", "FindPackageShare"):
         argument = call.args[0] if call.args else argument_of(call, "package")
-        expression = _place_of(python, argument)
+        expression = _place_of(python_file, argument)
         if expression is not None:
             facts.shares.append(expression)
-    written_paths = (python.value(node) for node in _written_paths(python))
+    written_paths = (python_file.value(node) for node in _written_paths(python_file))
     facts.written_files = frozenset(
         (share_path.package, share_path.subpath.strip("/"))
         for share_path in written_paths
         if isinstance(share_path, SharePath)
     )
     with suppress(RecursionError):  # raised for a sum of a thousand terms, whose paths are ignored
-        _PathReader(python, facts).visit(python.tree)
+        _PathReader(python_file, facts).visit(python_file.tree)
     return facts
 
 
@@ -140,45 +140,45 @@ def _defines_function(node: ast.stmt, name: str) -> bool:
     )
 
 
-def _read_imports(python: PythonFile, facts: LaunchFile) -> None:
+def _read_imports(python_file: PythonFile, facts: LaunchFile) -> None:
     spans: dict[str, Span] = {}
-    for node in ast.walk(python.tree):
+    for node in ast.walk(python_file.tree):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            spans.setdefault(node.module.partition(".")[0], python.span(node))
+            spans.setdefault(node.module.partition(".")[0], python_file.span(node))
         elif isinstance(node, ast.Import):
             for alias in node.names:
-                spans.setdefault(alias.name.partition(".")[0], python.span(node))
+                spans.setdefault(alias.name.partition(".")[0], python_file.span(node))
     facts.imports = list(spans.items())
 
 
-def _written_paths(python: PythonFile) -> Iterator[ast.expr]:
+def _written_paths(python_file: PythonFile) -> Iterator[ast.expr]:
     """Yield the expressions for the paths of files that are written."""
-    for call in python.calls("open", owner=""):
+    for call in python_file.calls("open", owner=""):
         mode = call.args[1] if len(call.args) > 1 else argument_of(call, "mode")
-        if call.args and _WRITE_MODES.intersection(python.text(mode) or ""):
+        if call.args and _WRITE_MODES.intersection(python_file.text(mode) or ""):
             yield call.args[0]
-    for call in python.calls("write_text", "write_bytes"):
+    for call in python_file.calls("write_text", "write_bytes"):
         if isinstance(call.func, ast.Attribute):
             yield call.func.value
-    for call in python.calls("copy", "copy2", "copyfile", "move", owner="shutil"):
+    for call in python_file.calls("copy", "copy2", "copyfile", "move", owner="shutil"):
         yield from call.args[1:2]
 
 
-def _place_of(python: PythonFile, node: ast.expr | None) -> EvaluatedText | None:
+def _place_of(python_file: PythonFile, node: ast.expr | None) -> EvaluatedText | None:
     if node is None:
         return None
-    text = python.text(node)
-    return None if text is None else EvaluatedText(text, node, python.span(node))
+    text = python_file.text(node)
+    return None if text is None else EvaluatedText(text, node, python_file.span(node))
 
 
 class _PathReader(ast.NodeVisitor):
     """A visitor that finds the complete paths in share folders, without the beginnings of longer paths."""
 
-    def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
-        self._python = python
+    def __init__(self, python_file: PythonFile, facts: LaunchFile) -> None:
+        self._python_file = python_file
         self._facts = facts
         self._path_depth = 0
-        self._names_in_paths = _names_in_path_operations(python.tree)
+        self._names_in_paths = _names_in_path_operations(python_file.tree)
 
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
@@ -194,9 +194,9 @@ class _PathReader(ast.NodeVisitor):
             super().generic_visit(node)
             return
         assert isinstance(node, ast.expr)
-        value = self._python.value(node)
+        value = self._python_file.value(node)
         if isinstance(value, SharePath) and value.subpath and not self._path_depth:
-            self._facts.paths.append(SharedFile(value.package, value.subpath.strip("/"), self._python.span(node)))
+            self._facts.paths.append(SharedFile(value.package, value.subpath.strip("/"), self._python_file.span(node)))
         self._path_depth += 1
         super().generic_visit(node)
         self._path_depth -= 1

@@ -111,27 +111,27 @@ def read_setup(source: SourceText) -> SetupFile:
     """Read the facts of a ``setup.py``."""
     facts = SetupFile(source)
     try:
-        python = PythonFile(source)
+        python_file = PythonFile(source)
     except (SyntaxError, ValueError) as error:
         facts.error = syntax_problem(source, error)
         return facts
-    facts.tree = python.tree
-    call = next(python.calls("setup"), None)
+    facts.tree = python_file.tree
+    call = next(python_file.calls("setup"), None)
     if call is None:
         return facts
     facts.has_call = True
     if any(keyword.arg is None for keyword in call.keywords):
         facts.is_complete = facts.entry_points_complete = False
     name = argument_of(call, "name")
-    text = python.text(name)
+    text = python_file.text(name)
     if name is not None and text is not None:
-        facts.name = text, python.span(name)
+        facts.name = text, python_file.span(name)
     try:
-        _DataFilesReader(python, facts).read(argument_of(call, "data_files"), call)
+        _DataFilesReader(python_file, facts).read(argument_of(call, "data_files"), call)
     except RecursionError:  # raised for lists that contain each other, or a thousand terms
         facts.is_complete = False
-    _read_packages(python, facts, argument_of(call, "packages"))
-    _read_entry_points(python, facts, argument_of(call, "entry_points"))
+    _read_packages(python_file, facts, argument_of(call, "packages"))
+    _read_entry_points(python_file, facts, argument_of(call, "entry_points"))
     return facts
 
 
@@ -146,13 +146,13 @@ def syntax_problem(source: SourceText, error: SyntaxError | ValueError) -> Synta
 class _DataFilesReader:
     """A reader of the entries of ``data_files`` into the facts of a ``setup.py``."""
 
-    def __init__(self, python: PythonFile, facts: SetupFile) -> None:
-        self._python = python
+    def __init__(self, python_file: PythonFile, facts: SetupFile) -> None:
+        self._python_file = python_file
         self._facts = facts
         self._visited_names: set[str] = set()  # the names of lists that were already read
 
     def read(self, node: ast.expr | None, call: ast.Call) -> None:
-        self._facts.data_files_span = self._python.span(node if node is not None else call.func)
+        self._facts.data_files_span = self._python_file.span(node if node is not None else call.func)
         if node is not None:
             self._entries(node)
 
@@ -172,7 +172,7 @@ class _DataFilesReader:
         if node.id in self._visited_names:
             return
         self._visited_names.add(node.id)
-        value = self._python.assigned_expression(node.id)
+        value = self._python_file.assigned_expression(node.id)
         if value is None:
             self._facts.is_complete = False
         else:
@@ -183,18 +183,18 @@ class _DataFilesReader:
         if isinstance(node, ast.Starred):
             self._entries(node.value)
             return
-        node = self._python.resolved(node)
+        node = self._python_file.resolved(node)
         if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
             self._facts.is_complete = False
             return
-        self._sources(node.elts[1], self._python.text(node.elts[0]))
+        self._sources(node.elts[1], self._python_file.text(node.elts[0]))
 
     def _sources(self, node: ast.expr, destination: str | None) -> None:
-        if isinstance(node, ast.Name) and any(self._python.calls("append", "extend", "insert", owner=node.id)):
+        if isinstance(node, ast.Name) and any(self._python_file.calls("append", "extend", "insert", owner=node.id)):
             self._facts.is_complete = False
-        node = self._python.resolved(node)
-        value = self._python.value(node)
-        span = self._python.span(node)
+        node = self._python_file.resolved(node)
+        value = self._python_file.value(node)
+        span = self._python_file.span(node)
         if isinstance(value, Pattern):
             self._add(value.text, destination, span, value)
         elif isinstance(value, str):
@@ -215,7 +215,7 @@ class _DataFilesReader:
 
     def _read_additions(self, name: str) -> None:
         """Record the entries added by ``name.append(...)``, ``name.extend(...)``, ``name += ...``."""
-        for node in ast.walk(self._python.tree):
+        for node in ast.walk(self._python_file.tree):
             if isinstance(node, ast.Call) and called_name(node) in (f"{name}.append", f"{name}.extend"):
                 if len(node.args) != 1:
                     continue
@@ -227,35 +227,35 @@ class _DataFilesReader:
                 self._entries(node.value)
 
 
-def _read_packages(python: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:
-    node = None if node is None else python.resolved(node)
+def _read_packages(python_file: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:
+    node = None if node is None else python_file.resolved(node)
     if not isinstance(node, (ast.List, ast.Tuple)):
         return
     facts.packages = []
     for item in node.elts:
-        text = python.text(item)
+        text = python_file.text(item)
         if text is not None:
-            facts.packages.append((text, python.span(item)))
+            facts.packages.append((text, python_file.span(item)))
 
 
-def _read_entry_points(python: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:
+def _read_entry_points(python_file: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:
     if node is None:
         return
-    node = python.resolved(node)
+    node = python_file.resolved(node)
     if not isinstance(node, ast.Dict):
         facts.entry_points_complete = False
         return
     for key, value in zip(node.keys, node.values, strict=True):
-        if python.text(key) != PROGRAM_GROUP:
+        if python_file.text(key) != PROGRAM_GROUP:
             continue
-        scripts = python.resolved(value)
+        scripts = python_file.resolved(value)
         if not isinstance(scripts, (ast.List, ast.Tuple)):
             facts.entry_points_complete = False
             continue
         for script in scripts.elts:
-            text = python.text(script)
+            text = python_file.text(script)
             match = ENTRY_POINT_LINE.match(text) if text is not None else None
             if match is None:
                 facts.entry_points_complete = False
             else:
-                facts.entry_points.append(Program(match[1], match[2], match[3], python.span(script)))
+                facts.entry_points.append(Program(match[1], match[2], match[3], python_file.span(script)))

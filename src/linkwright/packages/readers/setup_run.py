@@ -140,21 +140,21 @@ class _Interpreter:
         if isinstance(node, (ast.Import, ast.ImportFrom)):
             self._import(node)
         elif isinstance(node, ast.FunctionDef):
-            self._scopes[-1][node.name] = self._function(node.args, node.body)
+            self._scopes[-1][node.name] = self._make_function(node.args, node.body)
         elif isinstance(node, ast.Assign):
-            value = self._value(node.value)
+            value = self._evaluate(node.value)
             for target in node.targets:
                 self._bind(target, value)
         elif isinstance(node, ast.AnnAssign):
-            self._bind(node.target, _UNKNOWN if node.value is None else self._value(node.value))
+            self._bind(node.target, _UNKNOWN if node.value is None else self._evaluate(node.value))
         elif isinstance(node, ast.AugAssign):
             self._augment(node)
         elif isinstance(node, ast.Expr):
-            self._value(node.value)
+            self._evaluate(node.value)
         elif isinstance(node, ast.For):
             self._loop(node)
         elif isinstance(node, ast.If):
-            self.body(node.body if self._truth(node.test) else node.orelse)
+            self.body(node.body if self._evaluate_truth(node.test) else node.orelse)
         elif isinstance(node, ast.With):
             for item in node.items:
                 if item.optional_vars is not None:
@@ -163,7 +163,7 @@ class _Interpreter:
         elif isinstance(node, ast.Try):
             self.body([*node.body, *node.orelse, *node.finalbody])
         elif isinstance(node, ast.Return):
-            raise _ExitError("return", None if node.value is None else self._value(node.value))
+            raise _ExitError("return", None if node.value is None else self._evaluate(node.value))
         elif isinstance(node, (ast.Break, ast.Continue)):
             raise _ExitError("break" if isinstance(node, ast.Break) else "continue")
         elif isinstance(node, ast.ClassDef):
@@ -180,15 +180,15 @@ class _Interpreter:
                 self._scopes[-1][alias.asname or name] = _ModuleMember(name)
 
     def _augment(self, node: ast.AugAssign) -> None:
-        value = self._value(ast.BinOp(_load_expression(node.target), node.op, node.value))
-        old_value = self._value(_load_expression(node.target))
+        value = self._evaluate(ast.BinOp(_load_expression(node.target), node.op, node.value))
+        old_value = self._evaluate(_load_expression(node.target))
         if isinstance(old_value, list) and isinstance(value, list):
             old_value[:] = value  # change the list in place, because other names may refer to it
         else:
             self._bind(node.target, value)
 
     def _loop(self, node: ast.For) -> None:
-        for item in self._items(self._value(node.iter)):
+        for item in self._items(self._evaluate(node.iter)):
             self._tick()
             self._bind(node.target, item)
             try:
@@ -208,19 +208,19 @@ class _Interpreter:
             for element, element_value in zip(target.elts, values, strict=True):
                 self._bind(element, element_value)
         elif isinstance(target, ast.Subscript):
-            owner = self._value(target.value)
+            owner = self._evaluate(target.value)
             if isinstance(owner, list) and isinstance(target.slice, ast.Slice):
                 owner[self._slice(target.slice)] = list(self._items(value))
             elif isinstance(owner, (dict, list)):
-                owner[self._value(target.slice)] = value
+                owner[self._evaluate(target.slice)] = value
 
     # --- expressions -------------------------------------------------------------------------------------------------
 
-    def _value(self, node: ast.expr) -> Any:
+    def _evaluate(self, node: ast.expr) -> Any:
         """Return the value of an expression, or `_UNKNOWN` if it cannot be evaluated."""
         self._tick()
         try:
-            value = bounded(self._evaluate(node))
+            value = bounded(self._evaluate_or_raise(node))
         except (NotKnownError, TypeError, ValueError, AttributeError, LookupError, OSError):
             return _UNKNOWN
         if isinstance(value, (list, tuple, dict, set)):
@@ -233,14 +233,14 @@ class _Interpreter:
         if value_weight == _MAX_WEIGHT:
             raise _CannotContinueError
 
-    def _known_value(self, node: ast.expr) -> Any:
-        value = self._value(node)
+    def _evaluate_known(self, node: ast.expr) -> Any:
+        value = self._evaluate(node)
         if value is _UNKNOWN:
             raise NotKnownError
         return value
 
-    def _truth(self, node: ast.expr) -> bool:
-        value = self._value(node)
+    def _evaluate_truth(self, node: ast.expr) -> bool:
+        value = self._evaluate(node)
         if value is _UNKNOWN:
             raise _CannotContinueError  # the next steps depend on this value
         return bool(value)
@@ -250,7 +250,7 @@ class _Interpreter:
             raise _CannotContinueError
         yield from value
 
-    def _evaluate(self, node: ast.expr) -> Any:
+    def _evaluate_or_raise(self, node: ast.expr) -> Any:
         evaluator = _EVALUATORS.get(type(node))
         if evaluator is None:
             raise NotKnownError
@@ -271,9 +271,9 @@ class _Interpreter:
         values: list[Any] = []
         for node in nodes:
             if isinstance(node, ast.Starred):
-                values += self._items(self._value(node.value))
+                values += self._items(self._evaluate(node.value))
             else:
-                values.append(self._value(node))
+                values.append(self._evaluate(node))
         return values
 
     def _sequence(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
@@ -284,9 +284,9 @@ class _Interpreter:
         mapping: dict[Any, Any] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             if key is None:
-                mapping |= self._known_value(value)
+                mapping |= self._evaluate_known(value)
             else:
-                mapping[self._known_value(key)] = self._value(value)
+                mapping[self._evaluate_known(key)] = self._evaluate(value)
         return mapping
 
     def _f_string(self, node: ast.JoinedStr) -> str:
@@ -295,13 +295,13 @@ class _Interpreter:
             if isinstance(piece, ast.FormattedValue):
                 if piece.format_spec is not None or piece.conversion not in (-1, ord("s")):
                     raise NotKnownError
-                texts.append(str(self._known_value(piece.value)))
+                texts.append(str(self._evaluate_known(piece.value)))
             else:
-                texts.append(self._known_value(piece))
+                texts.append(self._evaluate_known(piece))
         return "".join(texts)
 
     def _operation(self, node: ast.BinOp) -> Any:
-        left, right = self._known_value(node.left), self._known_value(node.right)
+        left, right = self._evaluate_known(node.left), self._evaluate_known(node.right)
         if isinstance(node.op, ast.Add) and isinstance(left, (str, list, tuple, int)):
             return left + right
         if isinstance(node.op, ast.Sub) and isinstance(left, int):
@@ -315,13 +315,13 @@ class _Interpreter:
     def _logic(self, node: ast.BoolOp) -> Any:
         value = None
         for operand in node.values:
-            value = self._known_value(operand)
+            value = self._evaluate_known(operand)
             if bool(value) == isinstance(node.op, ast.Or):
                 break
         return value
 
     def _unary(self, node: ast.UnaryOp) -> Any:
-        value = self._known_value(node.operand)
+        value = self._evaluate_known(node.operand)
         if isinstance(node.op, ast.Not):
             return not value
         if isinstance(node.op, ast.USub) and isinstance(value, int):
@@ -329,49 +329,49 @@ class _Interpreter:
         raise NotKnownError
 
     def _comparison(self, node: ast.Compare) -> bool:
-        left = self._known_value(node.left)
-        for operation, right in zip(node.ops, map(self._known_value, node.comparators), strict=True):
+        left = self._evaluate_known(node.left)
+        for operation, right in zip(node.ops, map(self._evaluate_known, node.comparators), strict=True):
             if not _COMPARISONS[type(operation)](left, right):
                 return False
             left = right
         return True
 
     def _conditional(self, node: ast.IfExp) -> Any:
-        return self._value(node.body if self._truth(node.test) else node.orelse)
+        return self._evaluate(node.body if self._evaluate_truth(node.test) else node.orelse)
 
     def _comprehension(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp) -> Any:
         self._scopes.append({})
         try:
-            items = list(self._comprehension_values(node.generators, lambda: self._value(node.elt)))
+            items = list(self._evaluate_generators(node.generators, lambda: self._evaluate(node.elt)))
         finally:
             self._scopes.pop()
         return set(items) if isinstance(node, ast.SetComp) else items
 
-    def _comprehension_values(self, generators: list[ast.comprehension], value: Callable[[], Any]) -> Iterator[Any]:
+    def _evaluate_generators(self, generators: list[ast.comprehension], value: Callable[[], Any]) -> Iterator[Any]:
         if not generators:
             yield value()
             return
         generator, *remaining_generators = generators
-        for item in self._items(self._value(generator.iter)):
+        for item in self._items(self._evaluate(generator.iter)):
             self._tick()
             self._bind(generator.target, item)
-            if all(self._truth(condition) for condition in generator.ifs):
-                yield from self._comprehension_values(remaining_generators, value)
+            if all(self._evaluate_truth(condition) for condition in generator.ifs):
+                yield from self._evaluate_generators(remaining_generators, value)
 
     def _subscript(self, node: ast.Subscript) -> Any:
-        owner = self._known_value(node.value)
-        key = self._slice(node.slice) if isinstance(node.slice, ast.Slice) else self._known_value(node.slice)
+        owner = self._evaluate_known(node.value)
+        key = self._slice(node.slice) if isinstance(node.slice, ast.Slice) else self._evaluate_known(node.slice)
         if not isinstance(owner, (str, list, tuple, dict)):
             raise NotKnownError
         return owner[key]
 
     def _slice(self, node: ast.Slice) -> slice:
         return slice(
-            *(None if part is None else self._known_value(part) for part in (node.lower, node.upper, node.step))
+            *(None if part is None else self._evaluate_known(part) for part in (node.lower, node.upper, node.step))
         )
 
     def _attribute(self, node: ast.Attribute) -> Any:
-        owner = self._known_value(node.value)
+        owner = self._evaluate_known(node.value)
         if isinstance(owner, _ModuleMember):
             return "/" if owner.name == "os" and node.attr == "sep" else _ModuleMember(f"{owner.name}.{node.attr}")
         if isinstance(owner, PurePosixPath) and node.attr in ATTRIBUTES:
@@ -389,23 +389,23 @@ class _Interpreter:
         raise NotKnownError
 
     def _lambda(self, node: ast.Lambda) -> Callable[..., Any]:
-        return self._function(node.args, [ast.Return(node.body)])
+        return self._make_function(node.args, [ast.Return(node.body)])
 
     # --- calls -------------------------------------------------------------------------------------------------------
 
     def _call(self, node: ast.Call) -> Any:
-        function = self._known_value(node.func)
+        function = self._evaluate_known(node.func)
         keyword_arguments: dict[str, Any] = {}
         for keyword in node.keywords:
             if keyword.arg is None:
-                keyword_arguments |= self._known_value(keyword.value)
+                keyword_arguments |= self._evaluate_known(keyword.value)
             else:
-                keyword_arguments[keyword.arg] = self._value(keyword.value)
+                keyword_arguments[keyword.arg] = self._evaluate(keyword.value)
         arguments = self._elements(node.args)
         if isinstance(function, _ModuleMember):
             if function.name.rpartition(".")[2] == "setup":
                 raise _SetupCalledError(keyword_arguments.get("data_files"))
-            function = self._library_function(function.name)
+            function = self._find_library_function(function.name)
         if not callable(function):
             raise NotKnownError
         accepts_unknown = (
@@ -422,19 +422,19 @@ class _Interpreter:
         )
 
     def _resolve_function(self, value: Any) -> Any:
-        return self._library_function(value.name) if isinstance(value, _ModuleMember) else value
+        return self._find_library_function(value.name) if isinstance(value, _ModuleMember) else value
 
-    def _library_function(self, name: str) -> Callable[..., Any]:
+    def _find_library_function(self, name: str) -> Callable[..., Any]:
         try:
             return self._library.functions[name]
         except KeyError:
             raise NotKnownError from None
 
-    def _function(self, parameters: ast.arguments, body: list[ast.stmt]) -> Callable[..., Any]:
+    def _make_function(self, parameters: ast.arguments, body: list[ast.stmt]) -> Callable[..., Any]:
         names = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
         defaults = dict(zip(reversed(names), reversed(self._elements(parameters.defaults)), strict=False))
         keyword_only = {
-            parameter.arg: _UNKNOWN if default is None else self._value(default)
+            parameter.arg: _UNKNOWN if default is None else self._evaluate(default)
             for parameter, default in zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
         }
         outer = self._scopes[1:]

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from linkwright.urdf import Robot
 
 _OLD_ROBOT_ALPHA = 0.4
+"""The opacity of the old robot, from 0 to 1."""
 
 
 def add_old_robot(config: RvizConfig, name: str) -> None:

@@ -198,10 +198,10 @@ class _RobotWriter:
     def _add_mesh(self, link: LinkScene, shape: Shape) -> int:
         source = (shape.url,) if shape.kind == "mesh" else (shape.kind, *shape.size)
         primitives = []
-        for number, part in enumerate(self._mesh_parts(link, shape)):
+        for index, part in enumerate(self._mesh_parts(link, shape)):
             appearance = _appearance(shape, part, self._texture_file(shape))
             primitives.append(
-                {**self._add_geometry((*source, number), part), "material": self._add_material(appearance)}
+                {**self._add_geometry((*source, index), part), "material": self._add_material(appearance)}
             )
         key = (*source, *(primitive["material"] for primitive in primitives))
         if key not in self._meshes:

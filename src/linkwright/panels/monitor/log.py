@@ -14,7 +14,7 @@ from linkwright.panels.monitor.topic_tap import Paced, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 _TOPIC = "/rosout"
-_SEND_PERIOD = 0.1
+_SEND_PERIOD_S = 0.1
 _MAX_QUEUED = 1000
 """The largest number of queued records for a page. If there are more, only the newest are sent."""
 
@@ -65,7 +65,7 @@ class LogFeature(PageFeature):
         self._watching_pages: set[Page] = set()
         self._past_lines: deque[LogLine] = deque(maxlen=_MAX_PAST)
         self._tap: TopicTap | None = None
-        self._sender = Paced(self._send, _SEND_PERIOD)
+        self._sender = Paced(self._send, _SEND_PERIOD_S)
 
     def opening_messages(self) -> list[ServerMessage]:
         """Subscribe if this is the first page, and return no messages."""

@@ -119,7 +119,7 @@ def _value(kind: str, text: str) -> Any:
     return number
 
 
-_PUBLISH_PERIOD = 0.05
+_PUBLISH_PERIOD_S = 0.05
 
 
 class RemoteNode:
@@ -138,7 +138,7 @@ class RemoteNode:
         self._client = AsyncParameterClient(node, name)
         self._rows: dict[str, ParameterRow] = {}
         self._tasks: set[asyncio.Task[None]] = set()
-        self._publisher = Paced(self._publish_rows, _PUBLISH_PERIOD)
+        self._publisher = Paced(self._publish_rows, _PUBLISH_PERIOD_S)
 
     def close(self) -> None:
         """Cancel requests, and destroy the clients."""

@@ -90,7 +90,7 @@ def thin_out(samples: NDArray[Any], max_count: int) -> NDArray[Any]:
     return samples[:, sorted(selected)]
 
 
-_SEND_PERIOD = 1 / 30
+_SEND_PERIOD_S = 1 / 30
 
 _MAX_PAST_SAMPLES = 2048
 """The largest number of past samples of a series, about two for each column of pixels."""
@@ -238,7 +238,7 @@ class PlotsFeature(PageFeature):
         self._pages: dict[Page, _PagePlots] = {}
         self._channels: dict[str, _PlottedTopic] = {}
         self._field_taps: dict[Page, TopicTap] = {}
-        self._sender = Paced(self._send, _SEND_PERIOD)
+        self._sender = Paced(self._send, _SEND_PERIOD_S)
         self._timeline = viewer.add_feature(TimelineFeature)
         self._timeline.on_jump.append(self._on_jump)
         self._read_timer: asyncio.TimerHandle | None = None

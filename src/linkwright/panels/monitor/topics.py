@@ -92,9 +92,9 @@ def _text(value: Any) -> str:
     return str(value)
 
 
-_FIGURES_PERIOD = 1.0
-_MESSAGES_PERIOD = 0.2
-_WINDOW_MESSAGES = 2000
+_FIGURES_PERIOD_S = 1.0
+_MESSAGES_PERIOD_S = 0.2
+_MAX_WINDOW_MESSAGES = 2000
 _WINDOW_NS = 5_000_000_000
 _MIN_MEASURED_NS = 500_000_000
 """The minimum time of measuring before figures are sent, because messages may arrive in bursts."""
@@ -121,7 +121,7 @@ class _Gauge:
     def __init__(self, feature: TopicsFeature, context: ViewerContext, topic: str) -> None:
         self._feature = feature
         self.topic = topic
-        self.window = TrafficWindow(_WINDOW_MESSAGES, _WINDOW_NS)
+        self.window = TrafficWindow(_MAX_WINDOW_MESSAGES, _WINDOW_NS)
         self.last: tuple[bytes, float] | None = None
         self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.send_figures_soon)
 
@@ -160,8 +160,8 @@ class TopicsFeature(PageFeature):
         super().__init__(viewer)
         self._requests: dict[Page, _Request] = {}
         self._gauges: dict[str, _Gauge] = {}
-        self._figures_sender = Paced(self._send_figures, _FIGURES_PERIOD)
-        self._messages_sender = Paced(self._send_messages, _MESSAGES_PERIOD)
+        self._figures_sender = Paced(self._send_figures, _FIGURES_PERIOD_S)
+        self._messages_sender = Paced(self._send_messages, _MESSAGES_PERIOD_S)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
         """Replace the topics that a page lists, measures and expands."""

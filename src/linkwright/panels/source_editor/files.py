@@ -194,7 +194,7 @@ def with_line_ends(text: str, previous_text: str) -> str:
     ends = _LINE_END.findall(previous_text)
     if not any(end != "\n" for end in ends):
         return text
-    usual = max(set(ends), key=ends.count)
+    common_end = max(set(ends), key=ends.count)
     old, new = _LINE_END.split(previous_text), text.split("\n")
     first = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(old, new, strict=False))))
     same_end = zip(reversed(old[first:]), reversed(new[first:]), strict=False)
@@ -202,5 +202,5 @@ def with_line_ends(text: str, previous_text: str) -> str:
     count = len(new) - 1
     kept_after = max(0, last - 1)
     kept_before = min(first, len(ends) - kept_after, count - kept_after)
-    new_ends = ends[:kept_before] + [usual] * (count - kept_before - kept_after) + ends[len(ends) - kept_after :]
+    new_ends = ends[:kept_before] + [common_end] * (count - kept_before - kept_after) + ends[len(ends) - kept_after :]
     return "".join(line + end for line, end in zip(new, [*new_ends, ""], strict=True))

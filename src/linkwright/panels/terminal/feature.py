@@ -124,7 +124,7 @@ class TerminalFeature(PageFeature):
         for terminal in terminals:
             terminal.hang_up()
         for terminal in terminals:
-            terminal.wait_ended(_GRACE_SECONDS)
+            terminal.wait_until_ended(_GRACE_SECONDS)
 
     def _refusal(self, page: Page) -> Phrase | None:
         if self._folder is None:
@@ -169,7 +169,7 @@ class TerminalFeature(PageFeature):
         terminal = self._find(message.terminal)
         del self._terminals[terminal.number]
         terminal.hang_up()
-        ending = asyncio.get_running_loop().create_task(asyncio.to_thread(terminal.wait_ended, _GRACE_SECONDS))
+        ending = asyncio.get_running_loop().create_task(asyncio.to_thread(terminal.wait_until_ended, _GRACE_SECONDS))
         self._endings.add(ending)
         ending.add_done_callback(self._endings.discard)
         self._report()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 
-from linkwright.panels.terminal.pty import Ended, Pty, Receive, TerminalProgram, TerminalSize
+from linkwright.panels.terminal.pty import ExitCallback, OutputCallback, Pty, TerminalProgram, TerminalSize
 
 
-def open_pty(program: TerminalProgram, size: TerminalSize, receive: Receive, ended: Ended) -> Pty:
+def open_pty(program: TerminalProgram, size: TerminalSize, receive: OutputCallback, ended: ExitCallback) -> Pty:
     """Start a program in a new pseudoterminal.
 
     Args:

@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from linkwright.panels.terminal.process_session import end_session
-from linkwright.panels.terminal.pty import Ended, Receive, TerminalProgram, TerminalSize
+from linkwright.panels.terminal.pty import ExitCallback, OutputCallback, TerminalProgram, TerminalSize
 
 if sys.platform != "win32":
     import fcntl
@@ -39,7 +39,9 @@ class PosixPty:
         OSError: the program cannot be started.
     """
 
-    def __init__(self, program: TerminalProgram, size: TerminalSize, receive: Receive, ended: Ended) -> None:
+    def __init__(
+        self, program: TerminalProgram, size: TerminalSize, receive: OutputCallback, ended: ExitCallback
+    ) -> None:
         self._receive = receive
         self._ended = ended
         self._loop = asyncio.get_running_loop()
@@ -102,7 +104,7 @@ class PosixPty:
             self._loop.remove_writer(self._terminal)
             os.close(self._terminal)
 
-    def wait_ended(self, grace: float) -> None:
+    def wait_until_ended(self, grace: float) -> None:
         """Wait until all processes of the session have ended; kill them after `grace` seconds."""
         if self._waiter.is_alive():
             end_session(self._process.pid, grace)

@@ -34,7 +34,7 @@ class TerminalProgram:
 class Pty(Protocol):
     """A program in a pseudoterminal.
 
-    All methods except `wait_ended` are called on the event loop.
+    All methods except `wait_until_ended` are called on the event loop.
 
     Output is read only on request, so that a program cannot write more than its reader can handle.
     """
@@ -58,14 +58,14 @@ class Pty(Protocol):
         The program and its children receive SIGHUP, or its equivalent on the system.
         """
 
-    def wait_ended(self, grace: float) -> None:
+    def wait_until_ended(self, grace: float) -> None:
         """Wait after `hang_up` until all processes have ended, and kill them after `grace` seconds."""
 
 
-Receive = Callable[[bytes], object]
+OutputCallback = Callable[[bytes], object]
 """A callback on the event loop for a block of output."""
 
-Ended = Callable[[int], object]
+ExitCallback = Callable[[int], object]
 """Handles the end of the program, after all its output, on the event loop.
 
 Its argument is the exit status, or the negative number of the signal that ended the program.

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from linkwright.page.audience import Page
 from linkwright.page.protocol.terminal import TerminalInputLost, TerminalItem, TerminalOutput
 from linkwright.panels.terminal.history import TerminalHistory
-from linkwright.panels.terminal.pty import Ended, Pty, Receive, TerminalSize
+from linkwright.panels.terminal.pty import ExitCallback, OutputCallback, Pty, TerminalSize
 
 MAX_UNACKNOWLEDGED = 16
 """The maximum number of unacknowledged messages with output. No more output is read until pages acknowledge some."""
@@ -23,7 +23,7 @@ It joins the output of programs that write a few bytes at a time, and leaves tim
 _MAX_UNWRITTEN_SIZE = 1024 * 1024
 """The maximum size in bytes of input that the program has not read yet."""
 
-StartShell = Callable[[TerminalSize, Receive, Ended], Pty]
+StartShell = Callable[[TerminalSize, OutputCallback, ExitCallback], Pty]
 
 
 class Terminal:
@@ -124,9 +124,9 @@ class Terminal:
             self._pause.cancel()
         self._pty.hang_up()
 
-    def wait_ended(self, grace: float) -> None:
+    def wait_until_ended(self, grace: float) -> None:
         """Wait after `hang_up` until all programs have ended, and kill them after `grace` seconds."""
-        self._pty.wait_ended(grace)
+        self._pty.wait_until_ended(grace)
 
     def _receive(self, block: bytes) -> None:
         self._add(self._decoder.decode(block))

@@ -11,7 +11,7 @@ from contextlib import suppress
 from queue import SimpleQueue
 from typing import Any
 
-from linkwright.panels.terminal.pty import Ended, Receive, TerminalProgram, TerminalSize
+from linkwright.panels.terminal.pty import ExitCallback, OutputCallback, TerminalProgram, TerminalSize
 
 _POLL_SECONDS = 0.1
 _DRAIN_SECONDS = 0.3
@@ -28,7 +28,9 @@ class WindowsPty:
         ModuleNotFoundError: pywinpty, of the extra `learn`, is not installed.
     """
 
-    def __init__(self, program: TerminalProgram, size: TerminalSize, receive: Receive, ended: Ended) -> None:
+    def __init__(
+        self, program: TerminalProgram, size: TerminalSize, receive: OutputCallback, ended: ExitCallback
+    ) -> None:
         from winpty import PTY  # type: ignore[import-not-found,unused-ignore]  # only for Windows
 
         self._receive = receive
@@ -71,7 +73,7 @@ class WindowsPty:
             with suppress(Exception):  # If the program has ended, pywinpty raises various errors.
                 self._pty.cancel_io()
 
-    def wait_ended(self, grace: float) -> None:
+    def wait_until_ended(self, grace: float) -> None:
         """End the process and its children if they do not end by themselves within `grace` seconds."""
         process = self._pty.pid
         if not self._has_ended.wait(grace) and process is not None:

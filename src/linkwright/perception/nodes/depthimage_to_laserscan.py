@@ -18,7 +18,8 @@ from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.projection import Pinhole, scan_from_depths
 
 _METERS_OF_16UC1 = 0.001
-_SECONDS_BETWEEN_ERRORS = 5.0
+"""The unit of depths in images with the encoding 16UC1, in m."""
+_ERROR_PERIOD_S = 5.0
 
 
 class DepthImageToLaserScan(SingleNode):
@@ -89,7 +90,7 @@ class DepthImageToLaserScan(SingleNode):
 
     def _log_error(self, reason: str) -> None:
         self._node.get_logger().error(
-            f"Could not convert depth image to laserscan: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_ERRORS
+            f"Could not convert depth image to laserscan: {reason}", throttle_duration_sec=_ERROR_PERIOD_S
         )
 
 

@@ -30,7 +30,7 @@ from linkwright.perception.nodes.lazy import LazySubscriptions
 
 _IMAGE, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 _TRANSPORTS = ("raw", "compressed", "compressedDepth")
-_SECONDS_BETWEEN_ERRORS = 5.0
+_ERROR_PERIOD_S = 5.0
 
 
 def _unchanged(image: Any) -> Any:
@@ -113,7 +113,7 @@ class ImageRepublisher(SingleNode):
 
     def _log_error(self, reason: str) -> None:
         self._node.get_logger().error(
-            f"An image cannot be republished: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_ERRORS
+            f"An image cannot be republished: {reason}", throttle_duration_sec=_ERROR_PERIOD_S
         )
 
 

@@ -27,7 +27,8 @@ _QUEUE_SIZE = 10
 _FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 """NumPy's formats for the types of sensor_msgs/msg/PointField."""
 _FLOAT32, _INT32 = 7, 5
-_MIN_FLOAT = float(np.finfo(np.float64).tiny)
+_MIN_POSITIVE_FLOAT = float(np.finfo(np.float64).tiny)
+"""The default of ``min_height``, which is positive: the ROS package uses C++'s ``numeric_limits<double>::min()``."""
 
 
 class _Converter(SingleNode, ABC):
@@ -92,20 +93,23 @@ class PointCloudToLaserScan(_Converter):
     def _declare(self) -> tuple[str, str]:
         node = self._node
 
-        def number(name: str, default: float) -> float:
+        def declare_number(name: str, default: float) -> float:
             value: float = node.declare_parameter(name, default).value
             return value
 
         self._min_height, self._max_height = (
-            number("min_height", _MIN_FLOAT),
-            number("max_height", float(np.finfo(np.float64).max)),
+            declare_number("min_height", _MIN_POSITIVE_FLOAT),
+            declare_number("max_height", float(np.finfo(np.float64).max)),
         )
-        angle_min, angle_max = number("angle_min", -pi), number("angle_max", pi)
-        increment = positive(node, "angle_increment", number("angle_increment", pi / 180.0))
-        self._scan_time = number("scan_time", 1.0 / 30.0)
-        range_min, range_max = number("range_min", 0.0), number("range_max", float(np.finfo(np.float64).max))
+        angle_min, angle_max = declare_number("angle_min", -pi), declare_number("angle_max", pi)
+        increment = positive(node, "angle_increment", declare_number("angle_increment", pi / 180.0))
+        self._scan_time = declare_number("scan_time", 1.0 / 30.0)
+        range_min, range_max = (
+            declare_number("range_min", 0.0),
+            declare_number("range_max", float(np.finfo(np.float64).max)),
+        )
         self._rays = Rays(angle_min, angle_max, increment, range_min, range_max)
-        inf_epsilon = number("inf_epsilon", 1.0)
+        inf_epsilon = declare_number("inf_epsilon", 1.0)
         use_inf: bool = node.declare_parameter("use_inf", True).value
         self._empty_range = inf if use_inf else range_max + inf_epsilon
         input_topic: str = node.declare_parameter("point_cloud_topic", "cloud_in").value

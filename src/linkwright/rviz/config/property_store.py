@@ -65,7 +65,7 @@ class PropertyStore:
         Raises:
             KeyError: when the schema has no such property.
         """
-        return self._value(path, self._spec(path))
+        return self._get_value(path, self._spec(path))
 
     def flag(self, *path: str) -> bool:
         """Return the value of a ``bool`` property."""
@@ -94,7 +94,7 @@ class PropertyStore:
         """
         spec = self._spec(path)
         accepted_value = accept(spec, value)
-        if accepted_value != self._value(path, spec):
+        if accepted_value != self._get_value(path, spec):
             self._values[path] = accepted_value
             self._write(path, spec, to_text(spec, accepted_value))
         return accepted_value
@@ -108,7 +108,7 @@ class PropertyStore:
             KeyError: when the schema has no such property.
         """
         spec = self._spec(path)
-        if self._value(path, spec) == value:
+        if self._get_value(path, spec) == value:
             return False
         self._values[path] = value
         return True
@@ -125,17 +125,19 @@ class PropertyStore:
 
     def current_entries(self, saved_entries: Iterable[SavedEntry]) -> list[SavedEntry]:
         """Return the current entries of the keys that the given entries have, for `restore`."""
-        return [self._values_section().copy_entry(saved_entry.key) for saved_entry in saved_entries]
+        return [self._find_values_section().copy_entry(saved_entry.key) for saved_entry in saved_entries]
 
     def restore(self, saved_entries: Iterable[SavedEntry]) -> list[Path]:
         """Restore previous entries of the file, and return the paths of changed properties."""
         keys = {saved_entry.key for saved_entry in saved_entries}
-        section = self._values_section()
+        section = self._find_values_section()
         for saved_entry in saved_entries:
             section.restore(saved_entry)
         self._new_sections = remove_unchanged(self._new_sections)
         previous_values = {
-            path: value for path, value in self._values.items() if self._key(path) in keys and self._is_stored(path)
+            path: value
+            for path, value in self._values.items()
+            if self._find_key(path) in keys and self._is_stored(path)
         }
         for path in previous_values:
             del self._values[path]
@@ -188,7 +190,7 @@ class PropertyStore:
             id=property_id(self._owner, path),
             name=spec.name,
             kind=spec.kind,
-            value=None if spec.kind == "group" else self._value(path, spec),
+            value=None if spec.kind == "group" else self._get_value(path, spec),
             description=spec.description,
             options=self._get_frames() if spec.kind == "frame" else list(spec.options),
             minimum=spec.minimum,
@@ -209,7 +211,7 @@ class PropertyStore:
         path, value = spec.when
         return self.get(*path) == value and self._condition_holds(self._spec(path))
 
-    def _value(self, path: Path, spec: PropertySpec) -> PropertyValue:
+    def _get_value(self, path: Path, spec: PropertySpec) -> PropertyValue:
         try:
             return self._values[path]
         except KeyError:
@@ -241,7 +243,7 @@ class PropertyStore:
         return scalar
 
     def _write(self, path: Path, spec: PropertySpec, text: str) -> None:
-        former_key = self._former_key(path)
+        former_key = self._find_former_key(path)
         is_string = spec.kind in ("string", "frame", "enum", "color", "topic")
         is_nested = spec.nested or bool(spec.children)
         if former_key is not None:
@@ -253,24 +255,24 @@ class PropertyStore:
         if self._recorded_entries is not None and path[0] not in (
             saved_entry.key for saved_entry in self._recorded_entries
         ):
-            self._recorded_entries.append(self._values_section().copy_entry(path[0]))
-        self._values_section().put(path, text, string=is_string, nested=is_nested)
+            self._recorded_entries.append(self._find_values_section().copy_entry(path[0]))
+        self._find_values_section().put(path, text, string=is_string, nested=is_nested)
 
-    def _former_key(self, path: Path) -> FormerKey | None:
+    def _find_former_key(self, path: Path) -> FormerKey | None:
         """Return the RViz 1 key of a property, or None.
 
         None means that the property has no such key, or that the file contains the current key.
         """
         return self._former_keys.get(path) if self._section.scalar(*self._base, *path) is None else None
 
-    def _values_section(self) -> Section:
+    def _find_values_section(self) -> Section:
         """Return the mapping that contains the values, creating it if it is missing."""
         section, new_sections = make_section(self._section, *self._base)
         self._new_sections += new_sections
         return section
 
-    def _key(self, path: Path) -> str:
-        former_key = self._former_key(path)
+    def _find_key(self, path: Path) -> str:
+        former_key = self._find_former_key(path)
         return former_key.key if former_key else path[0]
 
     def _is_stored(self, path: Path) -> bool:

@@ -240,6 +240,7 @@ _MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
 _MODEL_GRID = {"Alpha": "0.6", "Color": "136; 142; 150", "Plane Cell Count": "20"}
 """A grid that is visible on the ground of both themes, and extends beyond the visible area."""
 _MODEL_DISTANCE = 3.0
+"""The initial distance of the camera from a model, in m."""
 _MODEL_PITCH = 0.5
 """The pitch of the view, in rad. The robot hides less of itself than at RViz's default pitch of 45 degrees."""
 

@@ -28,7 +28,7 @@ _BOXES_KEY = "boxes"
 _MAX_IMAGES = 10
 """The largest number of images that wait for their detections."""
 
-_PATIENCE = 1.0
+_DETECTION_TIMEOUT_S = 1.0
 """After this many seconds without detections, images are shown as soon as they arrive."""
 
 
@@ -80,7 +80,7 @@ class DetectionImageDisplay(ImageDisplay):
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
         """Store an image until its detections arrive, or show it if no detections arrived recently."""
-        if asyncio.get_running_loop().time() - self._last_detection_time < _PATIENCE:
+        if asyncio.get_running_loop().time() - self._last_detection_time < _DETECTION_TIMEOUT_S:
             self._images.append(message)
             return
         self._images.clear()

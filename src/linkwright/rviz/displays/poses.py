@@ -210,6 +210,7 @@ class ParticleCloudDisplay(RecentDisplay):
 
 
 _NORM_TOLERANCE = 10e-3
+"""The maximum deviation of a quaternion's squared length from 1."""
 
 
 class OdometryDisplay(RecentDisplay):

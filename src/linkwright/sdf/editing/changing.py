@@ -34,7 +34,7 @@ from linkwright.sdf.values import pose_of
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import Replacement, indentation, line_ending
 
-_NEW_MASS = 1.0
+_NEW_MASS_KG = 1.0
 _INCLUDE_HEAD = ("uri", "name")
 """The pose of an include is inserted after these elements."""
 
@@ -357,7 +357,7 @@ def _static_edits(entity: Entity, static: bool, size: Sequence[float] | None) ->
     if not static and entity.shape is not None and isinstance(entity.written, Model):
         link = entity.written.links[0]
         if link.inertial is None and link.element is not None:
-            new = inertial(entity.shape.kind, tuple(size or entity.shape.size), _NEW_MASS)
+            new = inertial(entity.shape.kind, tuple(size or entity.shape.size), _NEW_MASS_KG)
             edits.append(writing.insertion_edit(link.element, [new], first=True))
     return edits
 

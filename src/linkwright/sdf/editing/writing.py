@@ -26,6 +26,7 @@ from linkwright.xmltree.positions import attribute_name_range, attribute_value_r
 
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _TOLERANCE = 0.5e-9
+"""The maximum difference for which a written number is kept."""
 _GIMBAL_LOCK_TOLERANCE = 1e-9
 _TRUE = frozenset({"true", "1"})
 

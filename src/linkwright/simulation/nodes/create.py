@@ -30,7 +30,7 @@ class Create(EntitySpawner):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
-            options_by_name = self._parameter_options(options.parameters) | dict(_options(arguments))
+            options_by_name = self._parameter_options(options.parameters) | dict(_read_options(arguments))
             pose = {name: _parse_number(name, options_by_name.get(name, 0.0)) for name in _NUMBER_OPTIONS}
             name = str(options_by_name.get("name", ""))
             entity = Entity(name, (pose["x"], pose["y"], pose["z"]), (pose["R"], pose["P"], pose["Y"]))
@@ -91,7 +91,7 @@ def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
     return Entity(name, entity.xyz, entity.rpy, entity.namespace, entity.reference_frame)
 
 
-def _options(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
+def _read_options(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Yield the names and values of options, in the syntax of gflags.
 
     A name follows one or two dashes. Its value follows ``=`` or is the next argument.

@@ -79,13 +79,13 @@ class SimulatorClient(SingleNode):
         self._service_namespace = service_namespace.rstrip("/")
         self.finished = asyncio.get_running_loop().create_future()
 
-    def _call_service(self, kind: str, name: str, request: Any, on_response: Callable[[Any], None]) -> None:
+    def _call_service(self, service_type: str, name: str, request: Any, on_response: Callable[[Any], None]) -> None:
         """Call a service of the simulator, and pass the response to `on_response`.
 
         If the service is not available within the timeout, log an error and end with status 1.
         """
         path = f"{self._service_namespace}/{name}"
-        client = self._node.create_client(get_service(kind), path)
+        client = self._node.create_client(get_service(service_type), path)
         future = client.call_async(request)  # The request is sent when the service becomes available.
         future.add_done_callback(lambda completed: on_response(completed.result()))
         if client.service_is_ready():

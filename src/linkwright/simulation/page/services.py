@@ -28,7 +28,7 @@ class SimulationServices:
     def call_service(
         self,
         page: Page,
-        kind: str,
+        service_type: str,
         name: str,
         fields: dict[str, Any],
         on_response: Callable[[Any], None] = lambda _: None,
@@ -38,7 +38,7 @@ class SimulationServices:
 
         Args:
             page: the page that requests the call.
-            kind: the type of the service, such as ``std_srvs/srv/Empty``.
+            service_type: the type of the service, such as ``std_srvs/srv/Empty``.
             name: the name of the service, such as ``/pause_physics``.
             fields: the values of the request's fields, by name.
             on_response: called with the response, or with None if the service does not exist.
@@ -46,7 +46,7 @@ class SimulationServices:
         """
         client = self._clients.get(name)
         if client is None:
-            client = self._clients[name] = self._node.create_client(get_service(kind), name)
+            client = self._clients[name] = self._node.create_client(get_service(service_type), name)
         if not client.service_is_ready():
             on_response(None)
             refuse(page, phrase("there is no service '{name}'", name=name))

@@ -21,6 +21,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 _MOTOR_GAIN = 20.0
 """The gain of a wheel motor, in N m of torque per rad/s of velocity error."""
 _GRAVITY = 9.81
+"""The acceleration of gravity in m/s2."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -121,10 +121,10 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self._random = self.random
         topic = parameters.odom_topic or f"/model/{model}/odometry"
         covariance_topic = parameters.odom_covariance_topic or f"/model/{model}/odometry_with_covariance"
-        self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, usual="/odom")
+        self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, conventional_topic="/odom")
         self._covariance_odometry = node.publisher("nav_msgs/msg/Odometry", covariance_topic)
         self._transforms = node.publisher(
-            TRANSFORMS, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, usual="/tf"
+            TRANSFORMS, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, conventional_topic="/tf"
         )
         self.every(parameters.odom_publish_frequency, self._publish)
 

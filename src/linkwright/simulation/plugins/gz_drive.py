@@ -97,16 +97,18 @@ def connect_drive(
     frame = parameters.frame_id or f"{model}/odom"
     child_frame = parameters.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"
     odometry = node.publisher(
-        "nav_msgs/msg/Odometry", parameters.odom_topic or f"/model/{model}/odometry", usual="/odom"
+        "nav_msgs/msg/Odometry", parameters.odom_topic or f"/model/{model}/odometry", conventional_topic="/odom"
     )
-    transforms = node.publisher(TRANSFORMS, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, usual="/tf")
+    transforms = node.publisher(
+        TRANSFORMS, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, conventional_topic="/tf"
+    )
     topic = parameters.topic or f"/model/{model}/cmd_vel"
     commander = node.commander(commands.stop)
     node.subscribe(
         "geometry_msgs/msg/Twist",
         topic,
         commands.set_command,
-        usual="/cmd_vel",
+        conventional_topic="/cmd_vel",
         commander=commander,
         stop_motion=commands.stop,
     )

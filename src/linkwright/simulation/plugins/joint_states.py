@@ -39,9 +39,13 @@ class GzParameters:
 class _JointStates(SimulatedPlugin[P], Generic[P]):
     """A plugin that publishes the positions and velocities of joints with one axis."""
 
-    def _publish_joints(self, names: list[str], joints: list[str], rate: float, topic: str, usual: str = "") -> None:
+    def _publish_joints(
+        self, names: list[str], joints: list[str], rate: float, topic: str, conventional_topic: str = ""
+    ) -> None:
         self._names, self._joints = names, joints
-        self._output = self.node.publisher("sensor_msgs/msg/JointState", topic, 1000, usual=usual)
+        self._output = self.node.publisher(
+            "sensor_msgs/msg/JointState", topic, 1000, conventional_topic=conventional_topic
+        )
         self.every(rate, self._publish)
 
     def _publish(self) -> None:

@@ -30,7 +30,8 @@ class PluginNode(SteppedNode):
         exchange: passes messages between the graph and the simulation's thread.
         owned: whether the node belongs only to this plugin, and is destroyed with it.
         qos: overrides of QoS profiles (`NodeDescription.qos`).
-        usual: the usual topic names that are in use; None if topics are published only under their own names.
+        used_conventional_topics: the conventional topic names that are in use; None if topics are published only under
+            their own names.
         bridged: for plugins of gz, the topics that a bridge offers with another type; None for other plugins.
         now_ns: returns the simulated time in nanoseconds; by default the time of the node's clock.
         calls: calls the node's callbacks; by default an error in a callback is logged.
@@ -43,29 +44,31 @@ class PluginNode(SteppedNode):
         *,
         owned: bool,
         qos: Mapping[tuple[str, str], Element],
-        usual: set[str] | None,
+        used_conventional_topics: set[str] | None,
         bridged: BridgedTopics | None = None,
         now_ns: Callable[[], int] | None = None,
         calls: Calls | None = None,
     ) -> None:
         super().__init__(node, exchange, owned=owned, now_ns=now_ns, calls=calls)
         self._qos = {(node.handle.resolve_topic_name(topic), side): policy for (topic, side), policy in qos.items()}
-        self._usual = usual
+        self._used_conventional_topics = used_conventional_topics
         self._bridged = bridged
         self._unregister_functions: list[Callable[[], None]] = []
-        self._usual_names: list[str] = []
+        self._own_conventional_topics: list[str] = []
 
-    def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10, *, usual: str = "") -> Output:
+    def publisher(
+        self, msg_type: Any, topic: str, qos: QoSProfile | int = 10, *, conventional_topic: str = ""
+    ) -> Output:
         """Create a publisher for a topic.
 
         Args:
             msg_type: the class of the messages, or the name of the type.
             topic: a relative, absolute or private name. Characters that gz allows and ROS does not are replaced.
             qos: the QoS profile; a number is a depth.
-            usual: for topics of gz, the usual name on robots. The topic is also published under this name if the
-                simulation has this option enabled and no other plugin uses the name.
+            conventional_topic: for topics of gz, the usual name on robots. The topic is also published under this name
+                if the simulation has this option enabled and no other plugin uses the name.
         """
-        return self._create_output(msg_type, self._topic_names(topic, usual), qos)
+        return self._create_output(msg_type, self._topic_names(topic, conventional_topic), qos)
 
     def subscribe(
         self,
@@ -76,22 +79,22 @@ class PluginNode(SteppedNode):
         *,
         commander: Commander | None = None,
         stop_motion: Callable[[], object] | None = None,
-        usual: str = "",
+        conventional_topic: str = "",
     ) -> None:
         """Subscribe to a topic.
 
         The arguments are those of `publisher` and of `SteppedNode.subscribe`.
         """
         handle_message = self._make_callback(topic, callback, stop_motion, commander)
-        self._subscribe_to(msg_type, self._topic_names(topic, usual), handle_message, qos, commander)
+        self._subscribe_to(msg_type, self._topic_names(topic, conventional_topic), handle_message, qos, commander)
 
     def close(self) -> None:
         """Remove all endpoints of the plugin from the graph."""
         for unregister in self._unregister_functions:
             unregister()
         super().close()
-        if self._usual is not None:
-            self._usual.difference_update(self._usual_names)
+        if self._used_conventional_topics is not None:
+            self._used_conventional_topics.difference_update(self._own_conventional_topics)
 
     def _listen(self, topic: str, create_subscription: Callable[[str], Endpoint]) -> None:
         """Subscribe to a topic, or to its hidden name while a bridge offers another type."""
@@ -109,13 +112,14 @@ class PluginNode(SteppedNode):
         bridged.add_callback(topic, move_to_hidden_topic)
         self._unregister_functions.append(partial(bridged.remove_callback, topic, move_to_hidden_topic))
 
-    def _topic_names(self, topic: str, usual: str) -> list[str]:
+    def _topic_names(self, topic: str, conventional_topic: str) -> list[str]:
         topic = _BEFORE_LEADING_DIGIT.sub("_", _INVALID_CHARACTERS.sub("_", topic))
         names = [topic]
-        if usual and self._usual is not None and topic != usual and usual not in self._usual:
-            self._usual.add(usual)
-            self._usual_names.append(usual)
-            names.append(usual)
+        used = self._used_conventional_topics
+        if conventional_topic and used is not None and conventional_topic not in {topic, *used}:
+            used.add(conventional_topic)
+            self._own_conventional_topics.append(conventional_topic)
+            names.append(conventional_topic)
         return names
 
     def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:

@@ -60,18 +60,20 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         """Create the publishers of the poses of all entities and of moving entities."""
         world_topic = f"/world/{self.context.world.name}"
         self._revision = -1
-        self._all = self._dynamic = _Entities((), ())
+        self._all_entities = self._moving_entities = _Entities((), ())
         all_output = self.node.publisher("tf2_msgs/msg/TFMessage", f"{world_topic}/pose/info")
         dynamic_output = self.node.publisher("tf2_msgs/msg/TFMessage", f"{world_topic}/dynamic_pose/info")
-        self.every(_ALL_POSES_RATE, lambda: self._publish(all_output, dynamic=False))
-        self.every(max(self.parameters.dynamic_pose_hertz, 0.0), lambda: self._publish(dynamic_output, dynamic=True))
+        self.every(_ALL_POSES_RATE, lambda: self._publish(all_output, moving_only=False))
+        self.every(
+            max(self.parameters.dynamic_pose_hertz, 0.0), lambda: self._publish(dynamic_output, moving_only=True)
+        )
 
-    def _publish(self, output: Output, *, dynamic: bool) -> None:
+    def _publish(self, output: Output, *, moving_only: bool) -> None:
         if not output.is_wanted:
             return
         if self._revision != self.simulation.revision:
             self._collect_entities()
-        entities = self._dynamic if dynamic else self._all
+        entities = self._moving_entities if moving_only else self._all_entities
         poses = np.array([pose() if callable(pose) else pose for pose in entities.poses], dtype=float).reshape(-1, 7)
         count = len(entities.names)
         output.publish(TFMessage(batch=TransformBatch(("",) * count, entities.names, self.simulation.time, poses)))
@@ -92,7 +94,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         ordered = [(part, static) for kinds in _KIND_ORDER for part, static in parts if part.kind in kinds]
         world = self.simulation.world
         lights = [(light.name, Frames(world).placed(light.pose)) for light in world.lights]
-        self._all = _Entities(
+        self._all_entities = _Entities(
             (*(_local_name(part.name) for part, _ in ordered), *(name for name, _ in lights)),
             (
                 *(part.pose() if static or part.kind is PartKind.VISUAL else part.pose for part, static in ordered),
@@ -100,7 +102,9 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
             ),
         )
         moving = [part for part, static in ordered if not static and part.kind is not PartKind.VISUAL]
-        self._dynamic = _Entities(tuple(_local_name(part.name) for part in moving), [part.pose for part in moving])
+        self._moving_entities = _Entities(
+            tuple(_local_name(part.name) for part in moving), [part.pose for part in moving]
+        )
 
 
 def _local_name(name: str) -> str:

@@ -48,9 +48,9 @@ class ClassicState(SimulatedPlugin[StateParameters]):
             links = [placed_link.link.name for model in models.values() for placed_link in model.structure.links]
             self._links.publish(self._message("gazebo_msgs/msg/LinkStates", links))
 
-    def _message(self, kind: str, names: list[str]) -> Any:
+    def _message(self, message_type: str, names: list[str]) -> Any:
         states = [self._entities.state(name) for name in names]
-        return get_message(kind)(
+        return get_message(message_type)(
             name=names, pose=[state.pose for state in states], twist=[state.twist for state in states]
         )
 

@@ -46,7 +46,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
             "geometry_msgs/msg/Twist",
             topic,
             self._on_command,
-            usual="/cmd_vel",
+            conventional_topic="/cmd_vel",
             commander=commander,
             stop_motion=self._stop_motion,
         )

@@ -24,7 +24,7 @@ _ROUNDING_MARGIN = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class CameraView:
     """The pose and the optics of a camera.
 
     Attributes:
@@ -84,7 +84,7 @@ class MovableGeoms:
         self.resting = self._geoms[is_resting].tolist()
         return True
 
-    def visible_geoms(self, view: View) -> dict[int, Array]:
+    def visible_geoms(self, view: CameraView) -> dict[int, Array]:
         """Return the moving geoms that may appear in an image, except boxes that contain the camera.
 
         Returns:

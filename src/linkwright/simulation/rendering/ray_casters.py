@@ -11,7 +11,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.ray_casting import GROUPS
-from linkwright.simulation.rendering.movable import MovableGeoms, View, pixels_towards
+from linkwright.simulation.rendering.movable import CameraView, MovableGeoms, pixels_towards
 from linkwright.simulation.rendering.triangles import Mesh, is_infinite_plane, triangles_of
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
@@ -38,7 +38,7 @@ class Caster(Protocol):
 
     method: Phrase
 
-    def cast(self, view: View, *, normals: bool) -> Hits:
+    def cast(self, view: CameraView, *, normals: bool) -> Hits:
         """Cast the rays of an image into the current world, from the camera's near clip plane.
 
         Args:
@@ -58,7 +58,7 @@ class MujocoCaster:
         self._groups = np.zeros(GROUPS, dtype=np.uint8)
         self._groups[VISUAL_GROUP] = 1
 
-    def cast(self, view: View, *, normals: bool) -> Hits:
+    def cast(self, view: CameraView, *, normals: bool) -> Hits:
         """Cast the rays of an image with MuJoCo."""
         del normals  # MuJoCo always returns normals.
         origin, rays, near = view.origin, view.rays, view.optics.near
@@ -164,7 +164,7 @@ class EmbreeCaster:
         self._movable_meshes: dict[int, Mesh] = {}
         self._planes: list[int] = []
 
-    def cast(self, view: View, *, normals: bool) -> Hits:
+    def cast(self, view: CameraView, *, normals: bool) -> Hits:
         """Cast the rays of an image with Embree."""
         origin, rays, near = view.origin, view.rays, view.optics.near
         simulation = self._simulation

@@ -12,7 +12,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
-from linkwright.simulation.rendering.movable import View
+from linkwright.simulation.rendering.movable import CameraView
 from linkwright.simulation.rendering.ray_casters import Caster, Hits
 from linkwright.simulation.rendering.renderer import Channels, RenderedImage, axes_of
 from linkwright.simulation.simulation import Simulation
@@ -41,7 +41,7 @@ class RayRenderer:
         """Render the current view of a camera."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
-        hits = self._caster.cast(View(optics, origin, axes, rays), normals=Channels.COLOR in channels)
+        hits = self._caster.cast(CameraView(optics, origin, axes, rays), normals=Channels.COLOR in channels)
         is_clipped = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
         np.copyto(hits.distances, np.inf, where=is_clipped)
         np.copyto(hits.geoms, -1, where=is_clipped)

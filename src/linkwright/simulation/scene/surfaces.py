@@ -11,6 +11,7 @@ from typing import Any
 from linkwright.sdf.surfaces import Surface
 
 _DEFAULT_FRICTION = 1.0
+"""The coefficient of friction of a surface that does not specify one."""
 _MIN_FRICTION = 1e-5
 """The minimum coefficient of friction in MuJoCo."""
 _MAX_FRICTION = 1e3

@@ -19,8 +19,9 @@ from linkwright.sdf.worlds import SphericalCoordinates
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.sensors.noise import NoiseSource, VectorNoise
 
-_EQUATORIAL_RADIUS = 6378137.0
+_EQUATORIAL_RADIUS_M = 6378137.0
 _FLATTENING = 1 / 298.257223563
+"""The flattening of the ellipsoid of WGS 84."""
 _SQUARED_ECCENTRICITY = _FLATTENING * (2 - _FLATTENING)
 _ITERATIONS = 5
 """The number of iterations for the latitude. Each iteration reduces the error to less than a hundredth."""
@@ -66,9 +67,9 @@ class Globe:
         axis_distance = hypot(x, y)
         latitude = atan2(z, axis_distance * (1 - _SQUARED_ECCENTRICITY))
         for _ in range(_ITERATIONS):
-            normal = _EQUATORIAL_RADIUS / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+            normal = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
             latitude = atan2(z + _SQUARED_ECCENTRICITY * normal * sin(latitude), axis_distance)
-        normal = _EQUATORIAL_RADIUS / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+        normal = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
         altitude = (
             axis_distance * cos(latitude)
             + z * sin(latitude)
@@ -82,7 +83,7 @@ def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
 
     Latitude and longitude are in rad.
     """
-    normal = _EQUATORIAL_RADIUS / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+    normal = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
     axis_distance = (normal + altitude) * cos(latitude)
     return np.array(
         [

@@ -7,10 +7,10 @@ from math import inf
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 
-_SLOW = 0.8
-_FAST = 0.9
+_SLOW_SPEED_FRACTION = 0.8
+_NORMAL_SPEED_FRACTION = 0.9
 """The shares of the requested real-time factor below which a world is slow, and above which it is no longer."""
-_PATIENCE_S = 10.0
+_CHANGE_DURATION_S = 10.0
 """The real time in s for which a world must be slow or fast."""
 
 
@@ -34,10 +34,10 @@ class PaceWatch:
             requested: the requested real-time factor; infinite for as fast as possible.
             elapsed_s: the real time since the last measurement.
         """
-        limit = _FAST if self._is_slow else _SLOW
+        limit = _NORMAL_SPEED_FRACTION if self._is_slow else _SLOW_SPEED_FRACTION
         is_slow = requested < inf and factor < limit * requested
         self._changed_s = 0.0 if is_slow == self._is_slow else self._changed_s + elapsed_s
-        if self._changed_s >= _PATIENCE_S:
+        if self._changed_s >= _CHANGE_DURATION_S:
             self._changed_s = 0.0
             self._is_slow = not self._is_slow
             self._report(_finding(factor) if self._is_slow else None)

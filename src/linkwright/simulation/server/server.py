@@ -105,7 +105,7 @@ class SimulationServer:
         self.on_findings: list[Callable[[], object]] = []
         self.on_failure: list[Callable[[Exception], object]] = []
         self._options = options or ServerOptions()
-        self._used_usual_names: set[str] | None = set() if self._options.usual_names else None
+        self._used_conventional_topics: set[str] | None = set() if self._options.usual_names else None
         self._bridged = BridgedTopics(node, self.exchange)
         self._plugins: dict[str, list[SimulatedPlugin[object]]] = {}
         self.stored_values: dict[str, Any] = {}
@@ -451,7 +451,7 @@ class SimulationServer:
                 self.exchange,
                 owned=False,
                 qos={},
-                usual=self._used_usual_names,
+                used_conventional_topics=self._used_conventional_topics,
                 bridged=self._bridged,
                 now_ns=self._now_ns,
                 calls=calls,
@@ -477,7 +477,13 @@ class SimulationServer:
         self._node_names.add(full_name)
         node.graph.creators[node.get_logger().name] = self.node.get_logger().name
         return PluginNode(
-            node, self.exchange, owned=True, qos=node_description.qos, usual=None, now_ns=self._now_ns, calls=calls
+            node,
+            self.exchange,
+            owned=True,
+            qos=node_description.qos,
+            used_conventional_topics=None,
+            now_ns=self._now_ns,
+            calls=calls,
         )
 
     def _now_ns(self) -> int:

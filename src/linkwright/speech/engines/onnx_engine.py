@@ -31,6 +31,7 @@ MIN_PROBABILITY = 0.6
 _LEAD_IN = RATE // 5  # the number of samples before the start of speech that are included
 _MAX_SAMPLES = 10 * RATE  # the maximum number of samples in an utterance
 _FULL_SCALE = 32_768.0
+"""The full scale of 16-bit samples."""
 
 
 class OnnxEngine(SpeechEngine):

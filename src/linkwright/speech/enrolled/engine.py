@@ -107,24 +107,24 @@ class EnrolledEngine(SpeechEngine):
     def _partial_result(self) -> list[Heard]:
         """Return the partial result of an utterance if it has changed, else an empty list."""
         self._last_match_frame = self._frame_count
-        guess = self._guess()
-        name = self._name(guess)
+        guess = self._recognize()
+        name = self._phrase_of(guess)
         if guess is None or name is None or name == self._partial:
             return []
         self._partial = name
-        return [self._result(name, guess, final=False)]
+        return [self._make_result(name, guess, final=False)]
 
     def _end_utterance(self) -> list[Heard]:
         """End the utterance, and return its final result in a list."""
-        guess = self._guess()
+        guess = self._recognize()
         self._activity.end()
-        name = self._name(guess)
+        name = self._phrase_of(guess)
         self._partial = None
-        result = self._result(name or "", guess, final=True)
+        result = self._make_result(name or "", guess, final=True)
         self._buffer, self._noise_frames = self._buffer[-_LEAD_IN:], self._noise_frames[:0]
         return [result]
 
-    def _guess(self) -> Guess | None:
+    def _recognize(self) -> Guess | None:
         if self._recognizer is None:
             return None
         noise = unsteady_noise(np.concatenate((self._noise_frames, self._buffer)), self._activity.floor)
@@ -132,7 +132,7 @@ class EnrolledEngine(SpeechEngine):
             return None
         return self._recognizer.guess(self._buffer, self._activity.floor if noise is None else noise)
 
-    def _name(self, guess: Guess | None) -> str | None:
+    def _phrase_of(self, guess: Guess | None) -> str | None:
         """Return the phrase of a guess, or None if the guess is too uncertain or not a phrase."""
         if guess is None:
             return None
@@ -140,7 +140,7 @@ class EnrolledEngine(SpeechEngine):
             return None
         return self._phrases.get(_normalize(guess.name))
 
-    def _result(self, name: str, guess: Guess | None, *, final: bool) -> Heard:
+    def _make_result(self, name: str, guess: Guess | None, *, final: bool) -> Heard:
         buffer_start = self._frame_count - len(self._buffer)
         first, last = (guess.first, guess.last + 1) if guess is not None else (0, len(self._buffer))
         confidence = guess.confidence if guess is not None and name else 0.0

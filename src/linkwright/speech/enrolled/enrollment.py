@@ -16,7 +16,8 @@ _MIN_FRAMES, _MAX_FRAMES = 15, 300  # the minimum and maximum length of a word i
 _SILENT_EDGE = 3  # the number of frames at both ends of a recording that must not contain speech
 _MIN_RMS = 60.0  # the minimum RMS value of the loudest 50 ms, in steps of a 16-bit sample: -55 dB of full scale
 _MIN_SIGNAL_TO_NOISE = 8.0  # the minimum level above the noise in dB, as the mean over the bands of the loudest frames
-_MAX_CLIPPED_SHARE = 0.01
+_MAX_CLIPPED_FRACTION = 0.01
+"""The maximum fraction of the samples that may be clipped."""
 _CLIPPED_LEVEL = 32_700
 _MAX_OWN_DISTANCE = 0.7  # a multiple of the distance to a reversed word; 3 of 4 different words exceed it
 _SIMILAR_DISTANCE = 0.85  # a multiple of the distance to another word
@@ -135,7 +136,7 @@ def _check_sound(name: str, samples: Samples, first: int, last: int) -> Diagnost
             ),
             phrase("say the word once, within {seconds} s", seconds=_MAX_FRAMES // 100),
         )
-    if np.mean(np.abs(speech) >= _CLIPPED_LEVEL) > _MAX_CLIPPED_SHARE:
+    if np.mean(np.abs(speech) >= _CLIPPED_LEVEL) > _MAX_CLIPPED_FRACTION:
         return _rejection(
             "VOICE207",
             phrase("the recording for '{name}' is clipped: its loudest parts are cut off", name=name),

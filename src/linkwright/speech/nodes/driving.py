@@ -19,11 +19,11 @@ _MAX_ODOMETRY_AGE = 0.5
 """The maximum age of odometry in s. Without fresh odometry, the distance is computed from the commands."""
 _SPEED_GAIN = 3.0
 """The speed divided by the remaining distance, near the end, in 1/s."""
-_MIN_SPEED_SHARE = 0.15
+_MIN_SPEED_FRACTION = 0.15
 """The minimum fraction of the speed, however short the remaining distance is."""
 _TOLERANCES = {"distance": 0.005, "angle": 0.005}
 """The remaining distance in m or angle in rad at which a drive is finished."""
-_PATIENCE = 3.0
+_MAX_DURATION_RATIO = 3.0
 """The maximum duration of a drive, as a multiple of the expected duration, to which 3 s are added."""
 _SCALE_RANGE = 0.2, 4.0
 
@@ -78,7 +78,7 @@ class Driver:
         limits = [(name, resolve_amount(limit, values)) for name, limit in amounts.items() if limit is not None]
         self._kind, self._remaining = limits[0] if limits else ("", None)
         self._last_step_ns = self._now_ns()
-        self._deadline_ns = self._last_step_ns + round((3.0 + _PATIENCE * self._expected_seconds()) * 1e9)
+        self._deadline_ns = self._last_step_ns + round((3.0 + _MAX_DURATION_RATIO * self._expected_seconds()) * 1e9)
         self._odometer.pop(self._kind)
         self._publish(1.0)
         self._timer.reset()
@@ -134,7 +134,7 @@ class Driver:
             self._publish(
                 1.0
                 if self._kind == "duration"
-                else min(1.0, max(_SPEED_GAIN * self._remaining / rate, _MIN_SPEED_SHARE))
+                else min(1.0, max(_SPEED_GAIN * self._remaining / rate, _MIN_SPEED_FRACTION))
             )
 
     def _finish(self, ending: Ending) -> None:

@@ -49,7 +49,7 @@ _MAX_MISSING_SECONDS = 0.15
 Of 480 synthetic enrolled words with gaps of up to this length, none was taken for another word. With gaps of 0.25 s,
 5 of 60 were.
 """
-_REPEAT_SHARE = 0.5
+_REPEAT_FRACTION = 0.5
 """The fraction of the required confidence above which the node asks to repeat a command. Noise has less."""
 
 
@@ -260,7 +260,7 @@ class VoiceCommander(SingleNode):
             result.text
             and not is_certain
             and self._is_addressed
-            and result.confidence >= _REPEAT_SHARE * self._min_confidence
+            and result.confidence >= _REPEAT_FRACTION * self._min_confidence
         ):
             self._conversation.answer(
                 phrase("I am not sure that I heard '{phrase}', please repeat", phrase=result.text)

@@ -12,6 +12,7 @@ from linkwright.speech.sound.resampling import Resampler
 from linkwright.speech.sound.samples import RATE, Samples
 
 _FULL_SCALE = 32_768.0
+"""The full scale of 16-bit samples."""
 
 
 class Microphone:

@@ -17,7 +17,9 @@ MIN_RATE = 4_000
 MAX_RATE = 384_000
 
 _PASS_BAND = 0.92
+"""The cutoff frequency as a fraction of half the lower sampling rate."""
 _KAISER_BETA = 7.0
+"""The shape parameter of the Kaiser window."""
 _ZERO_CROSSINGS = 32  # the number of zero crossings of the sinc on each side
 _BATCH = 8_192  # the number of output samples per multiplication
 

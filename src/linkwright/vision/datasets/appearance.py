@@ -24,14 +24,14 @@ def set_lights(world: RandomizedWorld, generator: np.random.Generator) -> None:
     previous frame.
     """
     lights = []
-    for number in range(int(generator.integers(1, 4))):
-        intensity = 1.0 if number == 0 else 0.5
+    for index in range(int(generator.integers(1, 4))):
+        intensity = 1.0 if index == 0 else 0.5
         color = _tinted_white(generator, 0.25) * generator.uniform(0.3, 1.0) * intensity
         red, green, blue = (float(channel) for channel in color)
         diffuse = red, green, blue, 1.0
         x, y, z = (float(component) for component in generator.normal(size=3))
         direction = x, y, -abs(z) - 0.2
-        lights.append(Light(f"light {number}", "directional", diffuse=diffuse, direction=direction))
+        lights.append(Light(f"light {index}", "directional", diffuse=diffuse, direction=direction))
     ambient = _tinted_white(generator, 0.15) * generator.uniform(0.1, 0.55)
     world.light(lights, ambient, generator.random(3))
 

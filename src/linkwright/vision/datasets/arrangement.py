@@ -21,7 +21,7 @@ _MIN_LENGTH, _MAX_LENGTH = 0.045, 0.5
 """The minimum and maximum length of an object, as fractions of the image width: 30 to 320 of 640 pixels."""
 _FAR_CLIP = 30.0
 """The far clip distance, in m."""
-_OCCLUDED_SHARE = 0.15
+_OCCLUDED_FRACTION = 0.15
 """The fraction of objects that may be placed behind structures."""
 _CAMERA_CLEARANCE = 0.12
 """The minimum distance of the camera from any object or structure, in m."""
@@ -210,7 +210,7 @@ def _find_free_position(
     """
     x, y, heading = camera
     minimum, maximum = world.area
-    nearest, may_be_hidden = distances[0] + radius, generator.random() < _OCCLUDED_SHARE
+    nearest, may_be_hidden = distances[0] + radius, generator.random() < _OCCLUDED_FRACTION
     for _ in range(_MAX_TRIES):
         if generator.random() < 0.9:
             bearing = heading + generator.uniform(-0.45, 0.45) * field

@@ -65,9 +65,9 @@ class ClassRules:
 
     def class_number(self, *names: str) -> int | None:
         """Return the number of the first class with a pattern that matches a name, or None."""
-        for number, patterns in enumerate(self.patterns.values()):
+        for index, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
-                return number
+                return index
         return None
 
 

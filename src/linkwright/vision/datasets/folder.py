@@ -187,7 +187,7 @@ class DatasetFolder:
     def _data_yaml(self, splits: Mapping[str, int]) -> str:
         lines = ["# Made by linkwright dataset. Paths are relative to the folder of this file."]
         lines += [f"{split}: images/{split}" for split in SPLITS if splits[split]]
-        lines += ["names:", *(f"  {number}: {json.dumps(name)}" for number, name in enumerate(self._classes))]
+        lines += ["names:", *(f"  {index}: {json.dumps(name)}" for index, name in enumerate(self._classes))]
         return "\n".join(lines) + "\n"
 
     def _read_existing(self) -> None:

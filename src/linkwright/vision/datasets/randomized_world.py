@@ -95,7 +95,7 @@ class RandomizedWorld:
             _create_movable(model, copy, bases[original]) for copy, original in copies_with_originals
         ]
         self.floor = float(np.median([bases[scene_object.name].bottom for scene_object in objects])) if objects else 0.0
-        first = [model.geom(f"distractor {number}").id for number in range(distractors)]
+        first = [model.geom(f"distractor {index}").id for index in range(distractors)]
         self.distractors = first
         labeled = {model.geom(name).id for name in object_geoms} | {
             int(geom) for movable in self.movable_objects for geom in movable.geoms
@@ -189,19 +189,19 @@ class RandomizedWorld:
         """Return whether a geom has a material in the original world."""
         return bool(self._materials[geom] >= 0)
 
-    def paint(self, geom: int, color: Array, kind: str = "", number: int = 0) -> None:
+    def paint(self, geom: int, color: Array, kind: str = "", pattern_index: int = 0) -> None:
         """Set the color and the pattern of a geom.
 
         Args:
             geom: the geom.
             color: red, green and blue.
             kind: the kind of pattern: ``object``, ``wall`` or ``ground``; empty for none.
-            number: selects one of the patterns.
+            pattern_index: selects one of the patterns.
         """
         model = self.simulation.model
         model.geom_rgba[geom, :3] = color
         if kind:
-            model.geom_matid[geom] = self._patterns[kind][number % _PATTERNS_PER_KIND]
+            model.geom_matid[geom] = self._patterns[kind][pattern_index % _PATTERNS_PER_KIND]
 
     def light(self, lights: Sequence[Light], ambient: Array, background: Array) -> None:
         """Replace the lights, the ambient light and the background of the world.
@@ -221,13 +221,13 @@ class RandomizedWorld:
         """
         model = self.simulation.model
         for kind, size in _PATTERN_SIZES.items():
-            for number in range(_PATTERNS_PER_KIND):
-                texture = model.texture(f"{kind} {number}").id
-                pixels = random_pattern(generator, size, soft=kind == "object" or number % 2 == 0)
+            for index in range(_PATTERNS_PER_KIND):
+                texture = model.texture(f"{kind} {index}").id
+                pixels = random_pattern(generator, size, soft=kind == "object" or index % 2 == 0)
                 start, faces = int(model.tex_adr[texture]), model.tex_height[texture] // size
                 model.tex_data[start : start + faces * pixels.size] = np.tile(pixels.ravel(), faces)
         self._patterns = {
-            kind: [model.material(f"{kind} {number}").id for number in range(_PATTERNS_PER_KIND)]
+            kind: [model.material(f"{kind} {index}").id for index in range(_PATTERNS_PER_KIND)]
             for kind in _PATTERN_SIZES
         }
         self.reset()
@@ -291,18 +291,18 @@ class RandomizedWorld:
         geom_types = self._mujoco.mjtGeom
         body = self.simulation.scene.spec.worldbody.add_body(name="distractors")
         body.explicitinertial = True
-        for number in range(count):
-            shape = _DISTRACTOR_SHAPES[number % len(_DISTRACTOR_SHAPES)]
+        for index in range(count):
+            shape = _DISTRACTOR_SHAPES[index % len(_DISTRACTOR_SHAPES)]
             geom_type = getattr(geom_types, f"mjGEOM_{shape.upper()}")
-            geom = body.add_geom(name=f"distractor {number}", type=geom_type, size=[0.1, 0.1, 0.1], group=VISUAL_GROUP)
+            geom = body.add_geom(name=f"distractor {index}", type=geom_type, size=[0.1, 0.1, 0.1], group=VISUAL_GROUP)
             geom.contype = geom.conaffinity = 0
 
     def _add_materials(self) -> None:
         spec, texture_types = self.simulation.scene.spec, self._mujoco.mjtTexture
         for kind, size in _PATTERN_SIZES.items():
             is_flat = kind == "ground"
-            for number in range(_PATTERNS_PER_KIND):
-                name = f"{kind} {number}"
+            for index in range(_PATTERNS_PER_KIND):
+                name = f"{kind} {index}"
                 texture = spec.add_texture(
                     name=name, type=texture_types.mjTEXTURE_2D if is_flat else texture_types.mjTEXTURE_CUBE
                 )
@@ -311,7 +311,7 @@ class RandomizedWorld:
                 material = spec.add_material(name=name)
                 material.textures[self._mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
                 material.texuniform = is_flat
-                material.texrepeat = [0.25 * 1.5**number] * 2 if is_flat else [1.0, 1.0]
+                material.texrepeat = [0.25 * 1.5**index] * 2 if is_flat else [1.0, 1.0]
                 material.specular, material.shininess = 0.1, 0.1
 
 

@@ -102,7 +102,7 @@ class DatasetRenderer:
             if not world_objects:
                 raise _no_objects_error(path, source.classes)
         used_labels = {scene_object.label for image_objects in objects for scene_object in image_objects}
-        self.unused = tuple(name for number, name in enumerate(self.classes) if number not in used_labels)
+        self.unused = tuple(name for index, name in enumerate(self.classes) if index not in used_labels)
         self._randomized_worlds = [
             RandomizedWorld(simulation, image_objects, self._options.copies, self._options.distractors)
             for simulation, image_objects in zip(simulations, objects, strict=True)

@@ -15,7 +15,7 @@ from multiprocessing.connection import Connection, wait
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, DatasetInput, DatasetRenderer, LabeledImage
 
-_PATIENCE = 10.0
+_EXIT_TIMEOUT_S = 10.0
 """The seconds that a process has to exit before it is killed."""
 
 
@@ -105,7 +105,7 @@ class _Worker:
         """Terminate the process, and kill it if it does not exit in time."""
         self.connection.close()
         self._process.terminate()
-        self._process.join(_PATIENCE)
+        self._process.join(_EXIT_TIMEOUT_S)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()

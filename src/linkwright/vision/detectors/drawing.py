@@ -12,7 +12,7 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.library import load_opencv
 
 _HUE_COUNT = 24
-_TEXT_HEIGHT_SHARE = 1 / 26
+_TEXT_HEIGHT_FRACTION = 1 / 26
 """The height of capitals as a fraction of the image height, readable in a panel that is a few hundred pixels high."""
 _MIN_TEXT_HEIGHT = 9
 """The minimum height of capitals in pixels."""
@@ -50,7 +50,7 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
     cv2 = load_opencv()
     canvas = np.array(image, order="C")
     line_width = max(1, round(image.shape[0] / 300))
-    text_height = max(_MIN_TEXT_HEIGHT, round(_TEXT_HEIGHT_SHARE * image.shape[0]))
+    text_height = max(_MIN_TEXT_HEIGHT, round(_TEXT_HEIGHT_FRACTION * image.shape[0]))
     font_scale, stroke_width = (
         cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, text_height),
         max(1, round(text_height / 10)),

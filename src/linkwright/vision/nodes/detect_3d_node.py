@@ -33,9 +33,9 @@ _MAX_DEPTH_IMAGES = 10
 _MAX_STAMP_DIFFERENCE_NS = 500_000_000
 _RELIABLE = 1
 _MILLIMETERS = 1000
-_SECONDS_BETWEEN_WARNINGS = 5.0
+_WARNING_PERIOD_S = 5.0
 _MARKER_LIFETIME_SECONDS = 1
-_LABEL_HEIGHT = 0.12
+_LABEL_HEIGHT_M = 0.12
 _FORWARD_IN_OPTICAL = (0.5, -0.5, 0.5, 0.5)
 """The orientation, in an optical frame, of axes with x forward and z up, as a quaternion."""
 
@@ -184,7 +184,7 @@ class Detect3DNode(SingleNode):
 
     def _warn(self, reason: str) -> None:
         self._node.get_logger().warning(
-            f"the positions of detections are unknown: {reason}", throttle_duration_sec=_SECONDS_BETWEEN_WARNINGS
+            f"the positions of detections are unknown: {reason}", throttle_duration_sec=_WARNING_PERIOD_S
         )
 
 
@@ -199,11 +199,11 @@ def _make_markers(form: DetectionFormat, detection_array: Any, positions: list[O
     marker_class = get_message("visualization_msgs/msg/Marker")
     marker_array = get_message("visualization_msgs/msg/MarkerArray")()
     marker_array.markers.append(marker_class(header=detection_array.header, action=marker_class.DELETEALL))
-    for number, (detection, position) in enumerate(zip(detection_array.detections, positions, strict=True)):
+    for index, (detection, position) in enumerate(zip(detection_array.detections, positions, strict=True)):
         name, _ = form.best_hypothesis(detection)
         box_3d = form.box_3d(detection)
         box, label = (
-            marker_class(header=detection_array.header, ns=ns, id=number, type=shape, action=marker_class.ADD)
+            marker_class(header=detection_array.header, ns=ns, id=index, type=shape, action=marker_class.ADD)
             for ns, shape in (("boxes", marker_class.CUBE), ("labels", marker_class.TEXT_VIEW_FACING))
         )
         box.lifetime.sec = label.lifetime.sec = _MARKER_LIFETIME_SECONDS
@@ -212,9 +212,9 @@ def _make_markers(form: DetectionFormat, detection_array: Any, positions: list[O
         label_position.x, label_position.y, label_position.z = (
             box_center.x,
             box_center.y,
-            box_center.z + box_3d.size.z / 2 + _LABEL_HEIGHT,
+            box_center.z + box_3d.size.z / 2 + _LABEL_HEIGHT_M,
         )
-        label.scale.z = _LABEL_HEIGHT
+        label.scale.z = _LABEL_HEIGHT_M
         distance = float(np.linalg.norm(position.center))
         label.text = " ".join(filter(None, (name, detection.id, f"{distance:.1f} m")))
         for marker, alpha in ((box, 0.45), (label, 1.0)):

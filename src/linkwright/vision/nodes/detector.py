@@ -68,8 +68,8 @@ from linkwright.vision.nodes.image_watch import ImageWatch
 from linkwright.vision.nodes.latest_worker import LatestWorker
 
 _QUEUE_DEPTH = 10
-_SECONDS_BETWEEN_ERRORS = 5.0
-_SHARE_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
+_ERROR_PERIOD_S = 5.0
+_FRACTION_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
 _RATE_DESCRIPTOR = ParameterDescriptor(floating_point_range=[Range(0.0, 1000.0)])
 _SIDE_DESCRIPTOR = ParameterDescriptor(integer_range=[Range(0, MAX_SIZE)], read_only=True)
 _READ_ONLY = ParameterDescriptor(read_only=True)
@@ -77,7 +77,7 @@ _ANY_TYPE = ParameterDescriptor(dynamic_typing=True)
 _DETECTOR_SETTINGS = ("dictionary", "least_area", "part", "color")
 _COLORS_PARAMETER = "colors"
 _CLASSES_PARAMETER = "classes"
-_MIN_PERIOD_SHARE = 0.9
+_MIN_PERIOD_FRACTION = 0.9
 """The fraction of a period after which the next image is accepted, so that a slightly early image is not skipped."""
 
 
@@ -152,8 +152,8 @@ class DetectorNode(SingleNode):
         node.declare_parameter("device", "cpu", _READ_ONLY)
         node.declare_parameter("imgsz_height", 0, _SIDE_DESCRIPTOR)
         node.declare_parameter("imgsz_width", 0, _SIDE_DESCRIPTOR)
-        node.declare_parameter(dialect.threshold, dialect.default_threshold, _SHARE_DESCRIPTOR)
-        node.declare_parameter(dialect.iou, dialect.default_iou, _SHARE_DESCRIPTOR)
+        node.declare_parameter(dialect.threshold, dialect.default_threshold, _FRACTION_DESCRIPTOR)
+        node.declare_parameter(dialect.iou, dialect.default_iou, _FRACTION_DESCRIPTOR)
         node.declare_parameter(dialect.max_detections_parameter, dialect.default_max_detections)
         node.declare_parameter(_CLASSES_PARAMETER, [""], _ANY_TYPE)
         node.declare_parameter("enable", True)
@@ -290,7 +290,7 @@ class DetectorNode(SingleNode):
         if (
             rate > 0
             and self._last_image_ns is not None
-            and 0 <= now_ns - self._last_image_ns < _MIN_PERIOD_SHARE * 1e9 / rate
+            and 0 <= now_ns - self._last_image_ns < _MIN_PERIOD_FRACTION * 1e9 / rate
         ):
             return True
         self._last_image_ns = now_ns
@@ -363,7 +363,7 @@ class DetectorNode(SingleNode):
             self.finished.set_result(1)
 
     def _log_error(self, problem: str) -> None:
-        self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_ERRORS)
+        self._node.get_logger().error(problem, throttle_duration_sec=_ERROR_PERIOD_S)
 
     def _publish(self, header: Any, detections: Detections, image: NDArray[np.uint8] | None) -> None:
         self._detections.publish(MESSAGE_MAKERS[self.DIALECT.message_type](header, detections))

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 
-_CLOSE_TIMEOUT = 10.0
+_CLOSE_TIMEOUT_S = 10.0
 
 
 class LatestWorker(Generic[T]):
@@ -46,7 +46,7 @@ class LatestWorker(Generic[T]):
             self._is_closed = True
             self._pending.clear()
             self._changed.notify()
-        self._thread.join(_CLOSE_TIMEOUT)
+        self._thread.join(_CLOSE_TIMEOUT_S)
 
     def _run(self) -> None:
         process = self._prepare()

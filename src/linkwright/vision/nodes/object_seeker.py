@@ -34,7 +34,7 @@ from linkwright.vision.places.object_requests import (
     describe_sightings,
     parse_request,
 )
-from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
+from linkwright.vision.places.seeking import Observation, Phase, Seeker, SeekSettings
 
 _QUEUE_DEPTH = 10
 _STEP_SECONDS = 0.05
@@ -100,9 +100,9 @@ class ObjectSeeker(SingleNode):
                 distance=self._positive("distance", defaults.distance),
                 speed=self._positive("max_linear_velocity", defaults.speed),
                 turn_speed=self._positive("max_angular_velocity", defaults.turn_speed),
-                lost_time=self._positive("lost_time", defaults.lost_time),
+                lost_timeout=self._positive("lost_time", defaults.lost_timeout),
                 obstacle_distance=self._positive("obstacle_distance", defaults.obstacle_distance),
-                blocked_time=self._positive("blocked_time", defaults.blocked_time),
+                blocked_timeout=self._positive("blocked_time", defaults.blocked_timeout),
             )
         )
         self._robot_radius = self._positive("robot_radius", 0.22)
@@ -198,26 +198,26 @@ class ObjectSeeker(SingleNode):
         if self._trip is not None:
             self._trip.cancel()
 
-    def _make_view(self) -> View:
+    def _make_view(self) -> Observation:
         now_ns = self._now_ns()
         last_ns = max(self._seen_objects.last_detections_ns or 0, self._start_ns)
         silence = (now_ns - last_ns) / 1e9
         pose = self._poses.pose(self._fixed, self._base, 0)
         if pose is None:
-            return View(now_ns / 1e9, 0.0, detection_silence=inf)
+            return Observation(now_ns / 1e9, 0.0, time_since_detections=inf)
         heading = rpy_from_quaternion(pose[3:])[2]
         self._target = self._choose_object(pose) or self._target
         free_distance = self._free_distance(now_ns)
         if self._target is None:
-            return View(now_ns / 1e9, heading, detection_silence=silence, free_distance=free_distance)
+            return Observation(now_ns / 1e9, heading, time_since_detections=silence, free_distance=free_distance)
         ahead, left = _in_robot_frame(pose, self._target)
-        return View(
+        return Observation(
             now_ns / 1e9,
             heading,
             bearing=atan2(left, ahead),
             surface_distance=hypot(ahead, left) - self._target.radius,
             age=(now_ns - self._target.seen_ns) / 1e9,
-            detection_silence=silence,
+            time_since_detections=silence,
             free_distance=free_distance,
         )
 

@@ -25,9 +25,10 @@ _PINK_HUES = (292, 340)
 _GRAY_SATURATION, _GRAY_CHROMA = 0.22, 0.10
 _BLACK_VALUE, _WHITE_VALUE = 0.16, 0.72
 _BROWN_VALUE = 0.55
-_MIN_COLOR_SHARE = 0.35
+_MIN_COLOR_FRACTION = 0.35
 """The minimum fraction of pixels in the middle of a box that must have the color of the object."""
-_SAMPLED_SHARE = 0.7
+_SAMPLED_FRACTION = 0.7
+"""The central fraction of a box's width and height whose pixels are sampled."""
 _MAX_SAMPLES = 24
 """The maximum number of pixels used along a side. Larger boxes are subsampled."""
 
@@ -47,7 +48,7 @@ def object_color(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | N
     """
     height, width = image.shape[:2]
     center = np.array([box[0] + box[2], box[1] + box[3]], np.float64) / 2
-    half_size = np.array([box[2] - box[0], box[3] - box[1]], np.float64) / 2 * _SAMPLED_SHARE
+    half_size = np.array([box[2] - box[0], box[3] - box[1]], np.float64) / 2 * _SAMPLED_FRACTION
     steps = np.linspace(-1, 1, _MAX_SAMPLES)
     columns = np.floor(center[0] + half_size[0] * steps).astype(int)
     rows = np.floor(center[1] + half_size[1] * steps).astype(int)
@@ -61,10 +62,10 @@ def object_color(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | N
     bright_counts = counts.copy()
     bright_counts[[COLORS.index(name) for name in ("white", "grey", "black")]] = 0
     best = int(np.argmax(bright_counts))
-    if bright_counts[best] >= _MIN_COLOR_SHARE:
+    if bright_counts[best] >= _MIN_COLOR_FRACTION:
         return COLORS[best]
     best = int(np.argmax(counts))
-    return COLORS[best] if counts[best] >= _MIN_COLOR_SHARE else None
+    return COLORS[best] if counts[best] >= _MIN_COLOR_FRACTION else None
 
 
 def classify_colors(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:

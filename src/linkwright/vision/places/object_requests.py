@@ -54,7 +54,7 @@ _NUMBERS = {
     CHINESE: ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
 }
 _ROUND_NOUN, _ROUND_ASPECT_RATIOS = "ball", (0.75, 1.33)
-_ROUND_FILL_SHARES = (0.7, 0.86)
+_ROUND_FILL_FRACTIONS = (0.7, 0.86)
 """The range of the fraction of its box that a round patch fills, about pi / 4. A square patch fills the whole box."""
 _MAX_AHEAD_DEGREES, _MAX_BESIDE_DEGREES = 20.0, 110.0
 """The maximum bearings, in degrees, of objects ahead and of objects to the left or right. Other objects are behind."""
@@ -128,7 +128,7 @@ class ObjectRequest:
         if not class_noun:
             if self.noun != _ROUND_NOUN:
                 return self.color is not None
-            is_round = self.color is not None or _ROUND_FILL_SHARES[0] < score < _ROUND_FILL_SHARES[1]
+            is_round = self.color is not None or _ROUND_FILL_FRACTIONS[0] < score < _ROUND_FILL_FRACTIONS[1]
             return is_round and _ROUND_ASPECT_RATIOS[0] < aspect_ratio < _ROUND_ASPECT_RATIOS[1]
         return self.noun in (object_name(class_noun), object_name(class_noun.split()[-1]))
 

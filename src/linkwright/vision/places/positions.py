@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 
 from linkwright.vision.places.camera import CameraModel, Floats
 
-_INNER_SHARE = 0.6
+_INNER_FRACTION = 0.6
 """The central fraction of a box's width and height that shows mostly the object, not the background."""
-_MIN_SURFACE_SHARE = 0.25
+_MIN_SURFACE_FRACTION = 0.25
 """The minimum fraction of the depths in the middle of a box that belong to the object's surface."""
 _MIN_DEPTHS = 4
 _GAP_METERS, _GAP_SHARE = 0.1, 0.05
 """Neighboring depths belong to different surfaces if they differ by more than this distance and this fraction."""
-_MAX_FLAT_SHARE = 0.1
+_MAX_FLAT_FRACTION = 0.1
 """The maximum depth of a flat surface, as a fraction of its width."""
 _ROUND_ASPECT_RATIOS = (0.8, 1.25)
 """The range of width / height of the boxes of round objects. Such objects touch the ground below their center."""
 _EDGE_PIXELS = 1.5
+"""The distance from the lower edge of the image, in pixels, within which a box counts as cut off."""
 _MIN_DESCENT = 0.01
 """The minimum descent of a ray, in meters per meter, at which its point on the ground is used."""
 
@@ -69,9 +70,9 @@ def position_from_depth(
     rows, columns = depths.shape
     scale = np.array([columns / camera.width, rows / camera.height] * 2)
     scaled = np.asarray(box, np.float64) * scale
-    inner_depths = _depths_in(depths, _shrink_box(scaled, _INNER_SHARE))
+    inner_depths = _depths_in(depths, _shrink_box(scaled, _INNER_FRACTION))
     valid_depths = inner_depths[np.isfinite(inner_depths) & (inner_depths > 0) & (inner_depths <= max_depth)]
-    if len(valid_depths) < max(_MIN_DEPTHS, _MIN_SURFACE_SHARE * _MIN_SURFACE_SHARE * inner_depths.size):
+    if len(valid_depths) < max(_MIN_DEPTHS, _MIN_SURFACE_FRACTION * _MIN_SURFACE_FRACTION * inner_depths.size):
         return None
     surface_start, surface_end = _nearest_surface(np.sort(valid_depths))
     depths_in_box = _depths_in(depths, scaled)
@@ -83,7 +84,7 @@ def position_from_depth(
     front = float(np.percentile(surface, 5))
     width, height = _size_in_meters(box, camera, front)
     thickness = float(np.percentile(surface, 95)) - front
-    depth = width if thickness > _MAX_FLAT_SHARE * width else thickness
+    depth = width if thickness > _MAX_FLAT_FRACTION * width else thickness
     surface_depth = front + depth / 2
     width, height = _size_in_meters(box, camera, surface_depth)
     ray = camera.rays(np.array([[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]], np.float64))[0]
@@ -152,7 +153,7 @@ def _nearest_surface(depths: Floats) -> tuple[float, float]:
     gaps = np.diff(depths) > np.maximum(_GAP_METERS, _GAP_SHARE * depths[:-1])
     surfaces = np.split(depths, np.flatnonzero(gaps) + 1)
     for surface in surfaces:
-        if len(surface) >= _MIN_SURFACE_SHARE * len(depths):
+        if len(surface) >= _MIN_SURFACE_FRACTION * len(depths):
             return float(surface[0]), float(surface[-1])
     largest = max(surfaces, key=len)
     return float(largest[0]), float(largest[-1])

@@ -10,12 +10,15 @@ from linkwright.vision.places.object_requests import Answer
 
 _MAX_AGE_SECONDS = 0.5
 """The maximum age of a detection of an object that counts as visible now, seconds."""
-_FULL_TURN = 2 * pi + 0.3
+_SEARCH_ANGLE = 2 * pi + 0.3
+"""The angle in rad through which the robot turns to search: a full turn and 0.3 rad of overlap."""
 _MAX_DRIVING_BEARING = 0.6
 """The bearing in rad beyond which the robot turns to the object before it drives."""
 _TURN_GAIN, _SPEED_GAIN = 1.8, 0.8
-_MIN_SPEED = 0.06
-_DISTANCE_TOLERANCE, _BEARING_TOLERANCE = 0.03, 0.15
+"""The angular speed per bearing, and the speed per remaining distance, in 1/s."""
+_MIN_SPEED_MPS = 0.06
+"""The minimum speed while the robot approaches the object."""
+_DISTANCE_TOLERANCE_M, _BEARING_TOLERANCE_RAD = 0.03, 0.15
 _OBJECT_MARGIN = 0.2
 """The distance in m in front of the object's surface within which an obstacle counts as the object."""
 
@@ -36,21 +39,21 @@ class SeekSettings:
         distance: the final distance from the robot's center to the object's nearest side, meters.
         speed: the maximum speed, m/s.
         turn_speed: the maximum angular speed, rad/s; half of it is used to look around.
-        lost_time: the time without seeing the object after which the robot stops, seconds.
+        lost_timeout: the time without seeing the object after which the robot stops, seconds.
         obstacle_distance: the minimum distance from the robot's center to obstacles ahead, meters.
-        blocked_time: how long the robot waits for a clear path, seconds.
+        blocked_timeout: how long the robot waits for a clear path, seconds.
     """
 
     distance: float = 0.5
     speed: float = 0.3
     turn_speed: float = 1.0
-    lost_time: float = 3.0
+    lost_timeout: float = 3.0
     obstacle_distance: float = 0.35
-    blocked_time: float = 5.0
+    blocked_timeout: float = 5.0
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class Observation:
     """The observations of the robot at a step of seeking.
 
     Attributes:
@@ -60,7 +63,7 @@ class View:
         surface_distance: the distance from the robot's center to the object's nearest side, meters; infinite if it was
             never seen.
         age: seconds since the object was last seen; infinite if it was never seen.
-        detection_silence: seconds since the last message of a detector.
+        time_since_detections: seconds since the last message of a detector.
         free_distance: the distance from the robot's center to the nearest obstacle ahead, meters.
     """
 
@@ -69,7 +72,7 @@ class View:
     bearing: float = 0.0
     surface_distance: float = inf
     age: float = inf
-    detection_silence: float = 0.0
+    time_since_detections: float = 0.0
     free_distance: float = inf
 
 
@@ -120,58 +123,60 @@ class Seeker:
         self.stop()
         self.phase, self.follows_object = Phase.SEARCHING, follow
 
-    def step(self, view: View) -> Command:
+    def step(self, observation: Observation) -> Command:
         """Return the next velocity and event.
 
         Unless the seeker is idle, the method must be called several times per second.
         """
         if self.phase is Phase.IDLE:
             return Command()
-        if view.detection_silence > self.settings.lost_time:
+        if observation.time_since_detections > self.settings.lost_timeout:
             return self._finish(Answer.NO_DETECTIONS)
         if self.phase is Phase.SEARCHING:
-            return self._turn_and_look(view)
-        if view.age > self.settings.lost_time:
+            return self._turn_and_look(observation)
+        if observation.age > self.settings.lost_timeout:
             self.phase = Phase.SEARCHING
             self._reset()
             self._was_found = True
-            return self._turn_and_look(view)
-        return self._approach(view)
+            return self._turn_and_look(observation)
+        return self._approach(observation)
 
-    def _turn_and_look(self, view: View) -> Command:
-        if view.age < _MAX_AGE_SECONDS:
+    def _turn_and_look(self, observation: Observation) -> Command:
+        if observation.age < _MAX_AGE_SECONDS:
             is_first = not self._was_found
             self.phase = Phase.APPROACHING
-            command = self._approach(view)
+            command = self._approach(observation)
             return Command(command.linear, command.angular, command.event or Answer.FOUND) if is_first else command
         if self._heading is not None:
-            self._turned_angle += abs((view.heading - self._heading + pi) % (2 * pi) - pi)
-        self._heading = view.heading
-        if self._turned_angle > _FULL_TURN:
+            self._turned_angle += abs((observation.heading - self._heading + pi) % (2 * pi) - pi)
+        self._heading = observation.heading
+        if self._turned_angle > _SEARCH_ANGLE:
             return self._finish(Answer.LOST if self._was_found else Answer.NOT_FOUND)
-        direction = -1.0 if view.age < inf and view.bearing < 0 else 1.0
+        direction = -1.0 if observation.age < inf and observation.bearing < 0 else 1.0
         self._turn_direction = self._turn_direction or direction
         return Command(0.0, self._turn_direction * self.settings.turn_speed / 2)
 
-    def _approach(self, view: View) -> Command:
+    def _approach(self, observation: Observation) -> Command:
         settings = self.settings
-        angular = max(-settings.turn_speed, min(settings.turn_speed, _TURN_GAIN * view.bearing))
-        remaining = view.surface_distance - settings.distance
-        if remaining <= _DISTANCE_TOLERANCE:
-            if abs(view.bearing) > _BEARING_TOLERANCE:
+        angular = max(-settings.turn_speed, min(settings.turn_speed, _TURN_GAIN * observation.bearing))
+        remaining = observation.surface_distance - settings.distance
+        if remaining <= _DISTANCE_TOLERANCE_M:
+            if abs(observation.bearing) > _BEARING_TOLERANCE_RAD:
                 return Command(0.0, angular)
             return Command(0.0, angular) if self.follows_object else self._finish(Answer.ARRIVED)
-        if abs(view.bearing) > _MAX_DRIVING_BEARING:
+        if abs(observation.bearing) > _MAX_DRIVING_BEARING:
             return Command(0.0, angular)
-        speed = max(_MIN_SPEED, min(settings.speed, _SPEED_GAIN * remaining)) * (
-            1.0 - abs(view.bearing) / _MAX_DRIVING_BEARING / 2
+        speed = max(_MIN_SPEED_MPS, min(settings.speed, _SPEED_GAIN * remaining)) * (
+            1.0 - abs(observation.bearing) / _MAX_DRIVING_BEARING / 2
         )
-        if view.free_distance < view.surface_distance - _OBJECT_MARGIN:
-            free_distance = view.free_distance - settings.obstacle_distance
+        if observation.free_distance < observation.surface_distance - _OBJECT_MARGIN:
+            free_distance = observation.free_distance - settings.obstacle_distance
             if free_distance <= 0:
-                self._blocked_since = view.time if self._blocked_since is None else self._blocked_since
-                waiting_time = view.time - self._blocked_since
-                return self._finish(Answer.BLOCKED) if waiting_time > settings.blocked_time else Command(0.0, angular)
+                self._blocked_since = observation.time if self._blocked_since is None else self._blocked_since
+                waiting_time = observation.time - self._blocked_since
+                return (
+                    self._finish(Answer.BLOCKED) if waiting_time > settings.blocked_timeout else Command(0.0, angular)
+                )
             speed = min(speed, _SPEED_GAIN * free_distance)
         self._blocked_since = None
         return Command(speed, angular)

@@ -50,8 +50,8 @@ class TrackerSettings:
 class _Track:
     """A tracked object: its center and size, their velocities, and the covariances.
 
-    The values are x, y, width and height. Each has a filter with the same model: the variances of value and velocity,
-    and their covariance.
+    The values are x, y, width and height. Each has a Kalman filter with constant velocity: the variances of value and
+    velocity, and their covariance.
     """
 
     name: str
@@ -60,11 +60,12 @@ class _Track:
     variance: Floats
     covariance: Floats
     velocity_variance: Floats
-    seen_at: float
+    last_seen: float
     hits: int = 1
     id: int = 0
 
     def predict(self, seconds: float) -> None:
+        """Move the state to a later time, and increase the variances."""
         noise = (_ACCELERATION_NOISE * self._box_scale()) ** 2
         self.state = self.state + self.velocity * seconds
         self.state[2:] = np.maximum(self.state[2:], 1.0)
@@ -75,6 +76,7 @@ class _Track:
         self.velocity_variance = self.velocity_variance + noise * seconds**2
 
     def correct(self, measurement: Floats) -> None:
+        """Correct the state by a measured box, and decrease the variances."""
         noise = (_MEASUREMENT_NOISE * self._box_scale()) ** 2
         total_variance = self.variance + noise
         gain, velocity_gain = self.variance / total_variance, self.covariance / total_variance
@@ -142,7 +144,7 @@ class Tracker:
             if settings.low_threshold <= scores[index] < settings.high_threshold
         ]
         track_by_detection = self._correct_tracks(self._tracks, high_indices, frame)
-        unmatched_tracks = [track for track in self._tracks if track.id and track.seen_at != time]
+        unmatched_tracks = [track for track in self._tracks if track.id and track.last_seen != time]
         track_by_detection |= self._correct_tracks(unmatched_tracks, low_indices, frame)
         self._tracks = [track for track in self._tracks if not self._is_expired(track, time)]
         for index in high_indices:
@@ -161,7 +163,7 @@ class Tracker:
         for row, column in self._match(tracks, candidates, frame):
             track, index = tracks[row], candidates[column]
             track.correct(frame.boxes[index])
-            track.seen_at, track.hits = frame.time, track.hits + 1
+            track.last_seen, track.hits = frame.time, track.hits + 1
             track_by_detection[index] = track
         return track_by_detection
 
@@ -174,7 +176,7 @@ class Tracker:
         return assign(np.where(same_class, costs, np.inf), self._settings.match_threshold)
 
     def _is_expired(self, track: _Track, time: float) -> bool:
-        return track.seen_at != time and (not track.id or time - track.seen_at > self._settings.max_age)
+        return track.last_seen != time and (not track.id or time - track.last_seen > self._settings.max_age)
 
     def _start_track(self, name: str, box: Floats, time: float) -> _Track:
         scale = np.array([box[2], box[3], box[2], box[3]])

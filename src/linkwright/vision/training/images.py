@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.vision.detectors.letterbox import GRAY, letterbox_image
 from linkwright.vision.detectors.library import load_opencv
-from linkwright.vision.training.options import View
+from linkwright.vision.training.options import CropSettings
 from linkwright.vision.training.yolo_dataset import LabeledFile
 
 _MIN_SIDE = 3.0  # an object narrower than this after augmentation is ignored
-_MIN_VISIBLE_SHARE = 0.3  # an object with a smaller share of its box left in the image is ignored
+_MIN_VISIBLE_FRACTION = 0.3  # an object with a smaller share of its box left in the image is ignored
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,19 +59,19 @@ def read_labeled_images(labeled: Sequence[LabeledFile], width: int, height: int)
     images: NDArray[np.uint8] = np.zeros((len(labeled), height, width, 3), np.uint8)
     objects: list[NDArray[np.float32]] = [np.zeros((0, 5), np.float32)] * len(labeled)
 
-    def read(number: int) -> None:
-        pixels = read_image(labeled[number])
-        images[number], letterbox = letterbox_image(pixels, (height, width), None)
+    def read(index: int) -> None:
+        pixels = read_image(labeled[index])
+        images[index], letterbox = letterbox_image(pixels, (height, width), None)
         scaled_size = np.array((letterbox.width, letterbox.height) * 2, np.float32) * np.array(
             letterbox.scale * 2, np.float32
         )
-        boxes: NDArray[np.float32] = labeled[number].boxes * scaled_size
+        boxes: NDArray[np.float32] = labeled[index].boxes * scaled_size
         boxes += np.array((letterbox.left, letterbox.top) * 2, np.float32)
-        signed_classes = np.where(labeled[number].ignored, -2 - labeled[number].classes, labeled[number].classes)
-        objects[number] = np.concatenate((signed_classes[:, None].astype(np.float32), boxes), 1)
+        signed_classes = np.where(labeled[index].ignored, -2 - labeled[index].classes, labeled[index].classes)
+        objects[index] = np.concatenate((signed_classes[:, None].astype(np.float32), boxes), 1)
 
     with ThreadPoolExecutor(2) as pool:
-        for future in [pool.submit(read, number) for number in range(len(labeled))]:
+        for future in [pool.submit(read, index) for index in range(len(labeled))]:
             future.result()
     return LabeledImages(images, tuple(objects))
 
@@ -102,7 +102,7 @@ def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generato
 
 
 def augment(
-    labeled_images: LabeledImages, index: int, view: View, generator: np.random.Generator
+    labeled_images: LabeledImages, index: int, crop: CropSettings, generator: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Return a randomly augmented part of an image, with its objects.
 
@@ -111,7 +111,7 @@ def augment(
     Args:
         labeled_images: the images.
         index: the index of the image in `labeled_images`.
-        view: the size of the part in pixels, and the range of scales.
+        crop: the size of the part in pixels, and the range of scales.
         generator: the random generator.
 
     Returns:
@@ -120,10 +120,10 @@ def augment(
     cv2 = load_opencv()
     image, objects = labeled_images.images[index], labeled_images.objects[index]
     height, width = image.shape[:2]
-    size = view.size
-    min_log_scale, max_log_scale = np.log(view.scales)
+    size = crop.size
+    min_log_scale, max_log_scale = np.log(crop.scales)
     scale = float(np.exp(generator.uniform(min_log_scale, max_log_scale)))
-    mirror = -1.0 if generator.random() < 0.5 else 1.0
+    x_sign = -1.0 if generator.random() < 0.5 else 1.0
     aspect = float(np.exp(generator.uniform(-0.1, 0.1)))
     scale_x, scale_y = scale * aspect, scale / aspect
     center = generator.uniform(0, 1, 2) * (width, height)
@@ -139,13 +139,13 @@ def augment(
         center - np.array(size) / (scale_x, scale_y) / 2, np.minimum(max_corner, 0), np.maximum(max_corner, 0)
     )
     left, top = corner
-    shift = -left * scale_x if mirror > 0 else size[0] + left * scale_x
-    transform: NDArray[np.float32] = np.array([[scale_x * mirror, 0, shift], [0, scale_y, -top * scale_y]], np.float32)
+    shift = -left * scale_x if x_sign > 0 else size[0] + left * scale_x
+    transform: NDArray[np.float32] = np.array([[scale_x * x_sign, 0, shift], [0, scale_y, -top * scale_y]], np.float32)
     transformed = cv2.warpAffine(image, transform, size, flags=cv2.INTER_LINEAR, borderValue=(GRAY, GRAY, GRAY))
-    return _vary_light(transformed, generator), _transform_objects(objects, transform, *size)
+    return _augment_pixels(transformed, generator), _transform_objects(objects, transform, *size)
 
 
-def _vary_light(image: NDArray[np.uint8], generator: np.random.Generator) -> NDArray[np.uint8]:
+def _augment_pixels(image: NDArray[np.uint8], generator: np.random.Generator) -> NDArray[np.uint8]:
     cv2 = load_opencv()
     gain = float(np.exp(generator.uniform(-0.5, 0.35)))
     tint: NDArray[np.float32] = np.exp(generator.normal(0, 0.08, 3)).astype(np.float32) * np.float32(gain)
@@ -179,7 +179,7 @@ def _transform_objects(
     visible_boxes[:, 1::2] = np.clip(visible_boxes[:, 1::2], 0, height)
     visible_sizes, full_sizes = visible_boxes[:, 2:] - visible_boxes[:, :2], full_boxes[:, 2:] - full_boxes[:, :2]
     is_labeled = (visible_sizes.min(1, initial=np.inf) >= _MIN_SIDE) & (
-        visible_sizes.prod(1) >= _MIN_VISIBLE_SHARE * np.maximum(full_sizes.prod(1), 1e-6)
+        visible_sizes.prod(1) >= _MIN_VISIBLE_FRACTION * np.maximum(full_sizes.prod(1), 1e-6)
     )
     signed_classes = np.where(is_labeled | (objects[:, 0] < 0), objects[:, 0], -2 - objects[:, 0])
     result: NDArray[np.float32] = np.concatenate((signed_classes[:, None], visible_boxes), 1)[

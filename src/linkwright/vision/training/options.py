@@ -10,7 +10,7 @@ _FULL_SCALES = 0.8, 1.25
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class CropSettings:
     """The size of image crops, and the range of scales.
 
     Attributes:
@@ -67,13 +67,13 @@ class Options:
     held_out: tuple[Path, ...] = ()
     command: str = ""
 
-    def view(self, epoch: int) -> View:
+    def view(self, epoch: int) -> CropSettings:
         """Return the crops for an epoch, counted from 0: small at first, full images at the end.
 
         Features depend little on the size of an image, so small crops teach nearly as much as full images in a quarter
         of the time. Full images are only needed for objects that fill much of an image.
         """
         if epoch >= self.epochs - self.whole_epochs:
-            return View((self.width, self.height), _FULL_SCALES)
+            return CropSettings((self.width, self.height), _FULL_SCALES)
         width, height = (max(32, round(side / 2 / 32) * 32) for side in (self.width, self.height))
-        return View((width, height), _CROP_SCALES)
+        return CropSettings((width, height), _CROP_SCALES)

@@ -223,7 +223,7 @@ def label_path(image: Path) -> Path:
     return Path(*parts).with_suffix(".txt")
 
 
-def _parse_label(text: Path, number: int, line: str, classes: int) -> list[float]:
+def _parse_label(text: Path, line_number: int, line: str, classes: int) -> list[float]:
     fields = line.split()
     try:
         row = [float(field) for field in fields]
@@ -238,6 +238,6 @@ def _parse_label(text: Path, number: int, line: str, classes: int) -> list[float
         problem = phrase("x, y, width and height must be fractions of the image, between 0 and 1")
     if problem is None:
         return row
-    span = Span(display_path(text), number, 1, number, len(line) + 1)
+    span = Span(display_path(text), line_number, 1, line_number, len(line) + 1)
     message = phrase("'{line}' is not a label: {reason}", line=line.strip()[:60], reason=problem)
     raise LinkwrightError(Diagnostic("VISION304", message, span))

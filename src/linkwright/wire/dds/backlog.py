@@ -13,7 +13,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-PATIENCE = 3.0
+ACKNOWLEDGMENT_TIMEOUT_S = 3.0
 """Seconds after which samples are replaced anyway, because a stopped reader acknowledges nothing."""
 
 
@@ -81,4 +81,4 @@ class Backlog:
             return True
         if self._late_since is None:
             self._late_since = self._now()
-        return self._now() - self._late_since >= PATIENCE
+        return self._now() - self._late_since >= ACKNOWLEDGMENT_TIMEOUT_S

@@ -92,19 +92,19 @@ class _Reader:
         self._offset = 0
 
     def participant(self) -> ParticipantEntities:
-        gid = self._gid()
+        gid = self._read_gid()
         return ParticipantEntities(gid, [self._node() for _ in range(self._count())])
 
     def is_at_end(self) -> bool:
         return 0 <= len(self._data) - self._offset < 4
 
     def _node(self) -> NodeEntities:
-        return NodeEntities(self._string(), self._string(), self._gids(), self._gids())
+        return NodeEntities(self._string(), self._string(), self._read_gids(), self._read_gids())
 
-    def _gids(self) -> list[bytes]:
-        return [self._gid() for _ in range(self._count())]
+    def _read_gids(self) -> list[bytes]:
+        return [self._read_gid() for _ in range(self._count())]
 
-    def _gid(self) -> bytes:
+    def _read_gid(self) -> bytes:
         gid = self._bytes(self._gid_size)
         if any(gid[GID_SIZE:]):
             raise IndexError("the bytes after a GUID must be zeros")

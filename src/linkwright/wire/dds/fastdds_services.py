@@ -103,9 +103,9 @@ class FastServer:
         now = time.monotonic()
         with self._lock:
             late_replies, self._late_replies = self._late_replies, deque()
-        for deadline, client, number, response in late_replies:
+        for deadline, client, sequence_number, response in late_replies:
             if now < deadline:
-                self._reply(client, number, response, deadline)
+                self._reply(client, sequence_number, response, deadline)
         if self._early_requests:
             self._number_early_requests(now)
 
@@ -121,31 +121,35 @@ class FastServer:
 
     def _on_data(self, sample: Data) -> None:
         with self._lock:
-            self._first_samples.setdefault(sample.writer, (sample.number, sample.time))
+            self._first_samples.setdefault(sample.writer, (sample.sequence_number, sample.time))
             numbered = self._numbered_requests.get(sample.writer, ())
             if any(
-                number == sample.number and abs(time_ns - sample.time) < _TIME_TOLERANCE_NS
-                for number, time_ns in numbered
+                sequence_number == sample.sequence_number and abs(time_ns - sample.time) < _TIME_TOLERANCE_NS
+                for sequence_number, time_ns in numbered
             ):
                 return  # already handled: it was first taken from Cyclone's reader
         identity = read_related_identity(sample.inline, sample.order)
         client = sample.writer
         if identity is not None and is_reader(identity[0]) and identity[0].startswith(sample.source):
             client = identity[0]
-        self._forward(sample.payload or b"", sample.writer, client, sample.number)
+        self._forward(sample.payload or b"", sample.writer, client, sample.sequence_number)
 
-    def _forward(self, body: bytes, writer: bytes, client: bytes, number: int) -> None:
-        forward_request(body, self._service, partial(self._reply, client, number), RequestId(writer, number))
+    def _forward(self, body: bytes, writer: bytes, client: bytes, sequence_number: int) -> None:
+        forward_request(
+            body, self._service, partial(self._reply, client, sequence_number), RequestId(writer, sequence_number)
+        )
 
-    def _reply(self, client: bytes, number: int, response: Any, deadline: float | None = None) -> None:
+    def _reply(self, client: bytes, sequence_number: int, response: Any, deadline: float | None = None) -> None:
         if self._service.destroyed:
             return
         if self._can_reach(client):
-            inline = related_identity(client, number)
+            inline = related_identity(client, sequence_number)
             self._participant.write(self._replies, to_cdr(response), inline=inline, to=client[:PREFIX])
         else:
             with self._lock:
-                self._late_replies.append((deadline or time.monotonic() + _REPLY_TIMEOUT_S, client, number, response))
+                self._late_replies.append(
+                    (deadline or time.monotonic() + _REPLY_TIMEOUT_S, client, sequence_number, response)
+                )
             self._participant.changed()
 
     def _can_reach(self, client: bytes) -> bool:
@@ -176,18 +180,18 @@ class FastServer:
                 and now < early_request.arrived_at + _EARLY_REQUEST_TIMEOUT_S
             ]
         for writer in settled_writers:
-            for number, request in self._assign_numbers(
+            for sequence_number, request in self._assign_numbers(
                 writer, [early_request for early_request in early_requests if early_request.writer == writer]
             ):
-                self._forward(request.body, writer, writer, number)
+                self._forward(request.body, writer, writer, sequence_number)
 
     def _assign_numbers(self, writer: bytes, early_requests: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
         """Return a writer's numbered early requests, except requests that this reader also receives."""
         last_number = self._participant.last_of(self._requests, writer)
         with self._lock:
             if writer in self._first_samples:
-                number, written_first = self._first_samples[writer]
-                last_number = number - 1
+                sequence_number, written_first = self._first_samples[writer]
+                last_number = sequence_number - 1
                 early_requests = [
                     early_request
                     for early_request in early_requests
@@ -197,7 +201,7 @@ class FastServer:
                 zip(range(last_number - len(early_requests) + 1, last_number + 1), early_requests, strict=True)
             )
             numbered_requests = self._numbered_requests.setdefault(writer, deque(maxlen=_MAX_NUMBERED_REQUESTS))
-            numbered_requests.extend((number, request.written_ns) for number, request in numbered)
+            numbered_requests.extend((sequence_number, request.written_ns) for sequence_number, request in numbered)
         return numbered
 
 
@@ -230,9 +234,9 @@ class FastClient:
         """Write a request, and return a function that cancels it."""
         inline = related_identity(self._replies.reader.guid, NO_NUMBER)
         with self._lock:
-            number = self._participant.write(self._requests, to_cdr(request), inline=inline)
-            self._response_callbacks[number] = on_response
-        return partial(self._forget, number)
+            sequence_number = self._participant.write(self._requests, to_cdr(request), inline=inline)
+            self._response_callbacks[sequence_number] = on_response
+        return partial(self._forget, sequence_number)
 
     def is_ready(self) -> bool:
         """Return whether a server has discovered both endpoints of this client.
@@ -254,8 +258,8 @@ class FastClient:
         self._participant.remove(self._requests)
         self._participant.remove(self._replies)
 
-    def _forget(self, number: int) -> None:
-        self._response_callbacks.pop(number, None)
+    def _forget(self, sequence_number: int) -> None:
+        self._response_callbacks.pop(sequence_number, None)
 
     def _on_data(self, sample: Data) -> None:
         identity = read_related_identity(sample.inline, sample.order)

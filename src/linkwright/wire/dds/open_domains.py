@@ -21,7 +21,7 @@ class OpenDomain:
     """A domain with the entities that its participants share.
 
     Attributes:
-        number: the domain id.
+        domain_id: the domain id.
         handle: Cyclone's handle.
         users: the number of participants in the domain.
         descriptions: the descriptions of types.
@@ -29,8 +29,8 @@ class OpenDomain:
         confinement: the socket that keeps announcements inside the machine; None if they may leave it.
     """
 
-    def __init__(self, number: int, handle: int, confinement: socket | None = None) -> None:
-        self.number = number
+    def __init__(self, domain_id: int, handle: int, confinement: socket | None = None) -> None:
+        self.domain_id = domain_id
         self.handle = handle
         self.confinement = confinement
         self.users = 0
@@ -65,7 +65,7 @@ def close_domain(domain: OpenDomain) -> None:
     with _lock:
         domain.users -= 1
         if not domain.users:
-            del _opened[domain.number]
+            del _opened[domain.domain_id]
             if load().dds_delete(domain.handle) >= 0:
                 domain.types.free()
             if domain.confinement is not None:

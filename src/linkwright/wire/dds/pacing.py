@@ -141,13 +141,13 @@ class Pacer:
             self._socket.close()
 
     def send(
-        self, writer: bytes, number: int, sample: bytes, published_ns: int, addresses: dict[bytes, Address]
+        self, writer: bytes, sequence_number: int, sample: bytes, published_ns: int, addresses: dict[bytes, Address]
     ) -> None:
         """Send a sample on behalf of a writer.
 
         Args:
             writer: the writer's GUID.
-            number: the sequence number that the writer assigns to the sample.
+            sequence_number: the sequence number that the writer assigns to the sample.
             sample: the serialized sample, whose length is a multiple of four bytes.
             published_ns: when the sample was published, in ns since the epoch.
             addresses: the addresses of the participants with readers; see `addresses_of`.
@@ -160,7 +160,9 @@ class Pacer:
             receiver.begin()
         for fragment_number in range(1, fragment_count(sample) + 1):
             fragment = data[(fragment_number - 1) * FRAGMENT : fragment_number * FRAGMENT]
-            start = fragment_start(UNKNOWN, writer[PREFIX:], number, len(sample), fragment_number, len(fragment))
+            start = fragment_start(
+                UNKNOWN, writer[PREFIX:], sequence_number, len(sample), fragment_number, len(fragment)
+            )
             for prefix, receiver in tuple(readers.items()):
                 if receiver.wait_for_room():
                     head = message(writer[:PREFIX], stamp, start, to=prefix)

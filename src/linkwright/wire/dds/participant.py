@@ -55,7 +55,7 @@ class Participant:
         self._domain = open_domain(settings)
         try:
             with participant_qos(f"enclave={settings.enclave};".encode(), entity_name()) as qos:
-                code = self._dds.dds_create_participant(self._domain.number, qos, None)
+                code = self._dds.dds_create_participant(self._domain.domain_id, qos, None)
             self.entity = check_call(code, "joining the domain")
         except CycloneError as error:
             close_domain(self._domain)

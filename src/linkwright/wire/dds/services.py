@@ -104,9 +104,9 @@ class Pair:
         results = self._dds.take_bytes(self.reader, ANY_STATE, _MAX_SAMPLES)
         return (sample for sample in (results if isinstance(results, list) else ()) if sample[1].valid_data)
 
-    def write(self, client_id: int, number: int, message: Any) -> None:
+    def write(self, client_id: int, sequence_number: int, message: Any) -> None:
         """Write a request or a reply, with the header that identifies the request."""
-        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + to_cdr(message)[_ENCAPSULATION:])
+        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, sequence_number) + to_cdr(message)[_ENCAPSULATION:])
 
     def close(self) -> None:
         """Delete the reader and the writer."""
@@ -140,13 +140,13 @@ class RemoteServer:
         """Also start calling servers on Fast DDS."""
         self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
-    def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
+    def send(self, request: Any, on_response: Callable[[Any], None], sequence_number: int) -> Callable[[], None]:
         """Write a request, and return a function that cancels it."""
         if self._fast is not None and not self._uses_cyclone:
             return self._fast.send(request, on_response)
-        self._response_callbacks[number] = on_response
-        self.pair.write(self._client_id, number, request)
-        return partial(self._forget, number)
+        self._response_callbacks[sequence_number] = on_response
+        self.pair.write(self._client_id, sequence_number, request)
+        return partial(self._forget, sequence_number)
 
     def on_data(self) -> bool:
         """Pass on the replies for this client, and return whether there are more samples."""
@@ -155,8 +155,8 @@ class RemoteServer:
         count = 0
         for data, _ in self.pair.samples():
             count += 1
-            client_id, number, body = _split_sample(data)
-            on_response = self._response_callbacks.pop(number, None) if client_id == self._client_id else None
+            client_id, sequence_number, body = _split_sample(data)
+            on_response = self._response_callbacks.pop(sequence_number, None) if client_id == self._client_id else None
             if on_response is not None:
                 forward_response(body, self._client, on_response)
         return count == _MAX_SAMPLES
@@ -196,8 +196,8 @@ class RemoteServer:
         """Stop sending requests, without calling Cyclone."""
         self._client.remote_service = None
 
-    def _forget(self, number: int) -> None:
-        self._response_callbacks.pop(number, None)
+    def _forget(self, sequence_number: int) -> None:
+        self._response_callbacks.pop(sequence_number, None)
 
     def _is_server_available(self) -> bool:
         request_readers = [
@@ -240,11 +240,11 @@ class IncomingService:
             sender = self._remote.endpoint(info.publication_handle)
             if self._accept_from_fast(sender, data, info):
                 continue
-            client_id, number, body = _split_sample(data)
+            client_id, sequence_number, body = _split_sample(data)
             if body:
                 gid = bytes(16) if sender is None else sender.guid
-                reply = partial(self._reply, sender, client_id, number)
-                forward_request(body, self._service, reply, RequestId(gid, number))
+                reply = partial(self._reply, sender, client_id, sequence_number)
+                forward_request(body, self._service, reply, RequestId(gid, sequence_number))
         return count == _MAX_SAMPLES
 
     def connect_fast(self, participant: RtpsParticipant) -> None:
@@ -258,11 +258,11 @@ class IncomingService:
         """Write replies whose clients can now be reached or have been unreachable for too long."""
         with self._lock:
             for _ in range(len(self._late_replies)):
-                deadline, sender, client_id, number, response = self._late_replies.popleft()
+                deadline, sender, client_id, sequence_number, response = self._late_replies.popleft()
                 if time.monotonic() >= deadline or self._can_reach(sender):
-                    self.pair.write(client_id, number, response)
+                    self.pair.write(client_id, sequence_number, response)
                 else:
-                    self._late_replies.append((deadline, sender, client_id, number, response))
+                    self._late_replies.append((deadline, sender, client_id, sequence_number, response))
         if self._fast is not None:
             self._fast.write_pending_replies()
 
@@ -293,14 +293,14 @@ class IncomingService:
             self._on_waiting()
         return True
 
-    def _reply(self, sender: RemoteEndpoint | None, client_id: int, number: int, response: Any) -> None:
+    def _reply(self, sender: RemoteEndpoint | None, client_id: int, sequence_number: int, response: Any) -> None:
         if not self._service.destroyed:
             if self._can_reach(sender):
-                self.pair.write(client_id, number, response)
+                self.pair.write(client_id, sequence_number, response)
             else:
                 with self._lock:
                     self._late_replies.append(
-                        (time.monotonic() + _REPLY_TIMEOUT_S, sender, client_id, number, response)
+                        (time.monotonic() + _REPLY_TIMEOUT_S, sender, client_id, sequence_number, response)
                     )
                 self._on_waiting()
 
@@ -334,5 +334,5 @@ def _split_sample(data: bytes) -> tuple[int, int, bytes]:
     """
     if len(data) < _BODY:
         return 0, 0, b""
-    client_id, number = HEADER.unpack_from(data, _ENCAPSULATION)
-    return client_id, number, data[:_ENCAPSULATION] + data[_BODY:]
+    client_id, sequence_number = HEADER.unpack_from(data, _ENCAPSULATION)
+    return client_id, sequence_number, data[:_ENCAPSULATION] + data[_BODY:]

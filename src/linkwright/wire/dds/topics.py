@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.publisher import Publisher
     from linkwright.graph.endpoints.subscription import Subscription
 
-_PATIENCE = 2 * LEASE
+_PUBLISH_TIMEOUT_S = 2 * LEASE
 """Seconds for which a publisher with KEEP_ALL waits for slow readers."""
 
 _NAMELESS = "a node whose name is not known"
@@ -294,10 +294,10 @@ class OutgoingTopic(MirroredTopic):
             published_ns: when the sample was published, in ns since the epoch; None for now.
         """
         sample = Sample(data, len(data))
-        start = time.monotonic()
+        deadline = time.monotonic() + _PUBLISH_TIMEOUT_S
         must_retry = published_ns is not None or self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
         code = self._try_write(sample, published_ns)
-        while code == TIMEOUT and must_retry and time.monotonic() < start + _PATIENCE and not self._participant.closed:
+        while code == TIMEOUT and must_retry and time.monotonic() < deadline and not self._participant.closed:
             code = self._try_write(sample, published_ns)
         self._log_failure(code)
         return code >= 0

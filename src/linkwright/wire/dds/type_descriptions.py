@@ -63,19 +63,19 @@ class WireTypes:
     def _describe(self, structure: Structure) -> Any:
         with self._lock:
             if structure not in self._classes:
-                self._classes[structure] = struct_class(dds_type(structure.type_name), self._members(structure))
+                self._classes[structure] = struct_class(dds_type(structure.type_name), self._make_members(structure))
             return self._classes[structure]
 
-    def _members(self, structure: Structure) -> dict[str, Any]:
+    def _make_members(self, structure: Structure) -> dict[str, Any]:
         members: dict[str, Any] = {}
         try:
             for field in structure.wire_fields:
-                members[field.name] = self._member(field.type)
+                members[field.name] = self._make_member(field.type)
         except UndescribableError:
             return {}  # Without members, only the name is described, as real ROS 2 nodes do.
         return members
 
-    def _member(self, field: FieldType) -> Any:
+    def _make_member(self, field: FieldType) -> Any:
         types = _idl_types()
         element = self._element(field)
         if field.container is Container.ARRAY:
@@ -137,22 +137,22 @@ def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
         Both as XCDR2, little-endian, without header.
     """
     name = type_name.encode() + b"\0"
-    complete = _COMPLETE + _number(8 + len(name)) + _number(0) + _number(len(name)) + name
+    complete = _COMPLETE + _pack_number(8 + len(name)) + _pack_number(0) + _pack_number(len(name)) + name
     complete += bytes(-len(complete) % 4) + _NO_MEMBERS
     information = _with_dependencies(_MINIMAL_ID, _MINIMAL) + _with_dependencies(_COMPLETE_ID, complete)
-    complete_to_minimal = _number(1) + _type_id(complete) + _type_id(_MINIMAL)
+    complete_to_minimal = _pack_number(1) + _type_id(complete) + _type_id(_MINIMAL)
     return _add_size(information), _pair(_MINIMAL) + _pair(complete) + _add_size(complete_to_minimal)
 
 
 def _with_dependencies(member_id: int, type_object: bytes) -> bytes:
     """Encode a TypeIdentifierWithDependencies as a member of a mutable structure."""
-    sized_id = _add_size(_type_id(type_object) + b"\0" + _number(len(type_object) + 4))
-    return _number(member_id) + _add_size(_add_size(sized_id + _number(0) + _NO_MEMBERS))
+    sized_id = _add_size(_type_id(type_object) + b"\0" + _pack_number(len(type_object) + 4))
+    return _pack_number(member_id) + _add_size(_add_size(sized_id + _pack_number(0) + _NO_MEMBERS))
 
 
 def _pair(type_object: bytes) -> bytes:
     """Encode a sequence of one TypeIdentifierTypeObjectPair."""
-    return _add_size(_number(1) + _type_id(type_object) + b"\0" + _add_size(type_object))
+    return _add_size(_pack_number(1) + _type_id(type_object) + b"\0" + _add_size(type_object))
 
 
 def _type_id(type_object: bytes) -> bytes:
@@ -164,10 +164,10 @@ def _type_id(type_object: bytes) -> bytes:
 
 
 def _add_size(data: bytes) -> bytes:
-    return _number(len(data)) + data
+    return _pack_number(len(data)) + data
 
 
-def _number(value: int) -> bytes:
+def _pack_number(value: int) -> bytes:
     return value.to_bytes(4, "little")
 
 

@@ -19,24 +19,24 @@ class Attachment(NamedTuple):
     """The attachment of a sample.
 
     Attributes:
-        number: the sequence number, starting at 1; a reply has the number of its request.
+        sequence_number: the sequence number, starting at 1; a reply has the number of its request.
         sent_ns: when the sample was sent, in nanoseconds since the epoch.
         gid: the gid of the publisher or the client, 16 bytes.
     """
 
-    number: int
+    sequence_number: int
     sent_ns: int
     gid: bytes
 
 
-def write(number: int, sent_ns: int, gid: bytes) -> bytes:
+def write(sequence_number: int, sent_ns: int, gid: bytes) -> bytes:
     """Encode an attachment."""
-    return _LAYOUT.pack(number, sent_ns, GID_SIZE, gid)
+    return _LAYOUT.pack(sequence_number, sent_ns, GID_SIZE, gid)
 
 
 def read(data: bytes | None) -> Attachment | None:
     """Decode an attachment, or return None if it is missing or malformed."""
     if data is None or len(data) != _LAYOUT.size:
         return None
-    number, sent_ns, size, gid = _LAYOUT.unpack(data)
-    return Attachment(number, sent_ns, gid) if size == GID_SIZE else None
+    sequence_number, sent_ns, size, gid = _LAYOUT.unpack(data)
+    return Attachment(sequence_number, sent_ns, gid) if size == GID_SIZE else None

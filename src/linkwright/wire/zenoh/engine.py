@@ -28,7 +28,7 @@ from linkwright.wire.zenoh.interests import KEY_PREFIX, Interests
 from linkwright.wire.zenoh.opening import SessionOpener
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.services import IncomingService, RemoteServer
-from linkwright.wire.zenoh.session import close_session, configuration, is_client
+from linkwright.wire.zenoh.session import build_config, close_session, is_client
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
 
@@ -67,7 +67,7 @@ class Engine(AnyEngine):
         self._remote = remote
         self._departures = departures
         self._is_client = is_client(settings)
-        self._session = opener.open(configuration(settings))
+        self._session = opener.open(build_config(settings))
         self._session_id = str(self._session.zid())
         self._ids = itertools.count()
         self._nodes: dict[NodeIdentity, list[tuple[str, Any]]] = {}

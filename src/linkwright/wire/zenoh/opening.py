@@ -14,8 +14,8 @@ import zenoh
 
 from linkwright.diagnostics import joined
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.zenoh.reaching import configured_addresses, mode_value, obstacles
-from linkwright.wire.zenoh.session import could_not_connect, open_with, session_error
+from linkwright.wire.zenoh.reaching import configured_addresses, connection_problems, mode_value
+from linkwright.wire.zenoh.session import is_connection_failure, open_session, session_error
 
 _RETRY_INTERVAL_S = 1.0
 """Seconds between two attempts to connect."""
@@ -51,7 +51,7 @@ class SessionOpener:
         """
         seconds = _wait_seconds(config)
         if seconds == 0:
-            return open_with(config)
+            return open_session(config)
         config.insert_json5("connect/timeout_ms", "0")
         self.is_waiting = True
         reporter = ObstacleReporter(config, self._log_wait)
@@ -69,7 +69,7 @@ class SessionOpener:
                 return result
             remaining_s = deadline - time.monotonic()
             if (
-                not could_not_connect(result)
+                not is_connection_failure(result)
                 or remaining_s <= 0
                 or self._cancel_event.wait(min(_RETRY_INTERVAL_S, remaining_s))
             ):
@@ -115,7 +115,7 @@ class ObstacleReporter:
                 pause_s = _LOG_DELAY_S
                 continue
             reasons = (
-                joined(obstacles(self._config), "; ")
+                joined(connection_problems(self._config), "; ")
                 or f"{', '.join(configured_addresses(self._config))} does not accept a session"
             )
             if not self._end_event.is_set() and not self._is_connected():

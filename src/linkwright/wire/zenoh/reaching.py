@@ -17,7 +17,7 @@ import zenoh
 
 from linkwright.diagnostics import Phrase, foreign, phrase
 
-_PATIENCE = 2.0
+_RESPONSE_TIMEOUT_S = 2.0
 """Seconds within which an address must answer."""
 
 _ADDRESS = re.compile(r"(?P<kind>\w+)/(?P<host>\[[^]]+\]|[^:/?#]+):(?P<port>\d+)(?:[?#].*)?")
@@ -44,16 +44,16 @@ def mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
     return default if value is None else value
 
 
-def obstacles(config: zenoh.Config) -> list[Phrase]:
+def connection_problems(config: zenoh.Config) -> list[Phrase]:
     """Return the known reasons why a session cannot connect to its addresses."""
     tls = json.loads(config.get_json("transport/link/tls")) or {}
-    found = [found for address in configured_addresses(config) if (found := obstacle(address, tls))]
+    found = [found for address in configured_addresses(config) if (found := connection_problem(address, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
         found.append(phrase("the process at this address may have the same 'id': leave 'id' out of the configuration"))
     return found
 
 
-def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
+def connection_problem(address: str, tls: Mapping[str, Any]) -> Phrase:
     """Return the reason why a connection to an address fails.
 
     Return an empty phrase if no reason is found.
@@ -73,7 +73,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
     if port > _LAST_PORT:
         return phrase("'{address}' is not an address: its port must be at most 65535", address=address)
     try:
-        with socket.create_connection((host, port), _PATIENCE) as connection:
+        with socket.create_connection((host, port), _RESPONSE_TIMEOUT_S) as connection:
             return (
                 _tls_obstacle(address, connection, host, tls)
                 if match["kind"] == "tls"
@@ -97,7 +97,7 @@ def _protocol_obstacle(address: str, connection: socket.socket) -> Phrase:
 
     Otherwise the phrase is empty.
     """
-    connection.settimeout(_PATIENCE / 4)
+    connection.settimeout(_RESPONSE_TIMEOUT_S / 4)
     try:
         connection.sendall(b"\x04\0\x01\x08\0\0")
         response = connection.recv(16)
@@ -143,12 +143,12 @@ def _tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mappi
             certificate=certificate,
             key=key,
         )
-    connection.settimeout(_PATIENCE)
+    connection.settimeout(_RESPONSE_TIMEOUT_S)
     is_handshake_done = False
     try:
         with context.wrap_socket(connection, server_hostname=host) as tls_connection:
             is_handshake_done = True
-            tls_connection.settimeout(_PATIENCE / 2)
+            tls_connection.settimeout(_RESPONSE_TIMEOUT_S / 2)
             tls_connection.recv(1)  # With TLS 1.3, a client learns of a refusal only after the handshake.
     except TimeoutError:
         return Phrase("") if is_handshake_done else _no_tls_problem(address)

@@ -59,13 +59,15 @@ class RemoteServer:
         listener: Any = Callback(lambda _: on_change(), indirect=False)
         self._listener = self._querier.declare_matching_listener(listener)
 
-    def send(self, request: Any, on_response: Callable[[Any], None], number: int) -> Callable[[], None]:
+    def send(self, request: Any, on_response: Callable[[Any], None], sequence_number: int) -> Callable[[], None]:
         """Send a request, and return a function that cancels it."""
-        self._response_callbacks[number] = on_response
-        handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
-        metadata = attachment.write(number, time.time_ns(), self.token.gid)
+        self._response_callbacks[sequence_number] = on_response
+        handler: Any = Callback(
+            partial(self._receive, sequence_number), partial(self._end, sequence_number), indirect=False
+        )
+        metadata = attachment.write(sequence_number, time.time_ns(), self.token.gid)
         self._querier.get(handler, payload=to_cdr(request), attachment=metadata)
-        return partial(self._forget, number)
+        return partial(self._forget, sequence_number)
 
     def update_match_count(self, count: int) -> None:
         """Check whether a server is reachable, and update the client.
@@ -92,7 +94,7 @@ class RemoteServer:
         """Stop sending requests, without calling Zenoh."""
         self._client.remote_service = None
 
-    def _receive(self, number: int, reply: zenoh.Reply) -> None:
+    def _receive(self, sequence_number: int, reply: zenoh.Reply) -> None:
         """Pass the first reply to a request on to the client.
 
         Zenoh calls this method in one of its threads.
@@ -100,17 +102,17 @@ class RemoteServer:
         sample = reply.ok
         if sample is None:
             return
-        on_response = self._response_callbacks.pop(number, None)
+        on_response = self._response_callbacks.pop(sequence_number, None)
         if on_response is not None:
             forward_response(sample.payload.to_bytes(), self._client, on_response)
 
-    def _end(self, number: int) -> None:
+    def _end(self, sequence_number: int) -> None:
         """Handle the end of a request.
 
         A request without a reply is logged once per client. The future of such a request stays pending, as in rclpy.
         """
         if (
-            self._response_callbacks.pop(number, None) is not None
+            self._response_callbacks.pop(sequence_number, None) is not None
             and not self._has_warned
             and not self._client.destroyed
         ):
@@ -120,8 +122,8 @@ class RemoteServer:
                 "too long"
             )
 
-    def _forget(self, number: int) -> None:
-        self._response_callbacks.pop(number, None)
+    def _forget(self, sequence_number: int) -> None:
+        self._response_callbacks.pop(sequence_number, None)
 
 
 class IncomingService:
@@ -172,7 +174,7 @@ class IncomingService:
             is_closed = self._closed
             if not is_closed:
                 self._open.add(request)
-        reply, request_id = partial(self._reply, request), RequestId(metadata.gid, metadata.number)
+        reply, request_id = partial(self._reply, request), RequestId(metadata.gid, metadata.sequence_number)
         if is_closed or not forward_request(body, self._service, reply, request_id):
             with self._lock:
                 self._open.discard(request)
@@ -200,7 +202,7 @@ class _PendingRequest:
 
     def answer(self, response: Any, key: str) -> None:
         """Send the response."""
-        encoded = attachment.write(self._metadata.number, time.time_ns(), self._metadata.gid)
+        encoded = attachment.write(self._metadata.sequence_number, time.time_ns(), self._metadata.gid)
         self._query.reply(key, to_cdr(response), attachment=encoded)
         self._query.drop()
 

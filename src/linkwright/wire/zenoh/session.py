@@ -9,18 +9,18 @@ import threading
 import zenoh
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, foreign, phrase
-from linkwright.wire.zenoh.reaching import obstacles
+from linkwright.wire.zenoh.reaching import connection_problems
 from linkwright.wire.zenoh.settings import OVERRIDES, Settings
 
 _SOURCE_LOCATION = re.compile(r"\s+at /\S+?:\d+\.?")
 _NOT_CONNECTED = "Unable to connect"
 _ADDRESS_IN_USE = "already in use"
 _TLS_FILES = "new TLS listener"
-_CLOSING_LIMIT = 3.0
+_CLOSE_TIMEOUT_S = 3.0
 """The maximum time, in seconds, for which `close_session` waits."""
 
 
-def open_with(config: zenoh.Config) -> zenoh.Session:
+def open_session(config: zenoh.Config) -> zenoh.Session:
     """Open a session with a configuration.
 
     Raises:
@@ -35,8 +35,8 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
 def close_session(session: zenoh.Session) -> None:
     """Close a session, in the background if that takes long.
 
-    Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSING_LIMIT` at
-    the latest, so that the process can end.
+    Zenoh waits without a limit for connections whose buffers are full. This function returns after `_CLOSE_TIMEOUT_S`
+    at the latest, so that the process can end.
     """
     close_thread = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
     try:
@@ -44,23 +44,23 @@ def close_session(session: zenoh.Session) -> None:
     except RuntimeError:  # Python is shutting down and starts no more threads.
         session.close()
     else:
-        close_thread.join(_CLOSING_LIMIT)
+        close_thread.join(_CLOSE_TIMEOUT_S)
 
 
 def session_error(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
     """Return the error DDS112 for a session that cannot be opened."""
-    reasons = obstacles(config) if could_not_connect(error) else []
+    reasons = connection_problems(config) if is_connection_failure(error) else []
     return LinkwrightError(
         Diagnostic(
             "DDS112",
             phrase("a Zenoh session cannot be opened: {reason}", reason=foreign(_reason(error))),
             notes=tuple(Note(reason) for reason in reasons),
-            hint=None if reasons else _advice(str(error)),
+            hint=None if reasons else _hint_for(str(error)),
         )
     )
 
 
-def could_not_connect(error: zenoh.ZError) -> bool:
+def is_connection_failure(error: zenoh.ZError) -> bool:
     """Return whether a session could not be opened because no address could be reached."""
     return _NOT_CONNECTED in str(error)
 
@@ -71,10 +71,10 @@ def is_client(settings: Settings) -> bool:
     Raises:
         LinkwrightError: DDS111, the configuration is refused.
     """
-    return bool(json.loads(configuration(settings).get_json("mode")) == "client")
+    return bool(json.loads(build_config(settings).get_json("mode")) == "client")
 
 
-def listening_at(config: zenoh.Config) -> list[str]:
+def listen_endpoints(config: zenoh.Config) -> list[str]:
     """Return the addresses at which sessions with a configuration listen.
 
     The list is empty if the addresses differ between session modes.
@@ -83,7 +83,7 @@ def listening_at(config: zenoh.Config) -> list[str]:
     return [str(address) for address in addresses] if isinstance(addresses, list) else []
 
 
-def configuration(settings: Settings) -> zenoh.Config:
+def build_config(settings: Settings) -> zenoh.Config:
     """Return the Zenoh configuration that follows from the settings.
 
     Raises:
@@ -127,7 +127,7 @@ def _reason(error: Exception) -> str:
     return _SOURCE_LOCATION.sub("", str(error)).strip().rstrip(".")
 
 
-def _advice(reason: str) -> Phrase:
+def _hint_for(reason: str) -> Phrase:
     if _NOT_CONNECTED in reason:
         return phrase(
             "no router answers at the address of 'connect/endpoints': start one there first; with TLS, check "

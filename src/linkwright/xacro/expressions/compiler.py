@@ -385,7 +385,7 @@ class Compiler:
 
     def _call(self, node: ast.Call) -> Closure:
         function = self.compile(node.func)
-        positional = [self._argument(argument) for argument in node.args]
+        positional = [self._compile_argument(argument) for argument in node.args]
         keyword_closures = [(keyword.arg, self.compile(keyword.value)) for keyword in node.keywords]
         is_simple = not keyword_closures and not any(is_starred for is_starred, _ in positional)
         argument_closures = [closure for _, closure in positional]
@@ -399,7 +399,7 @@ class Compiler:
                 arguments = [closure(env) for closure in argument_closures]
                 keywords: dict[str, Any] = {}
             else:
-                arguments, keywords = _arguments(env, positional, keyword_closures)
+                arguments, keywords = _evaluate_arguments(env, positional, keyword_closures)
             try:
                 return call(env.session.budget, callee, arguments, keywords)
             except Fault as fault:
@@ -411,7 +411,7 @@ class Compiler:
 
         return call_function
 
-    def _argument(self, node: ast.expr) -> tuple[bool, Closure]:
+    def _compile_argument(self, node: ast.expr) -> tuple[bool, Closure]:
         if isinstance(node, ast.Starred):
             return True, self.compile(node.value)
         return False, self.compile(node)
@@ -433,12 +433,12 @@ class Compiler:
         return self._collection(node, lambda items: set(checked_keys(items)))
 
     def _collection(self, node: ast.List | ast.Tuple | ast.Set, build: Callable[[list[Any]], Any]) -> Closure:
-        items = [self._argument(item) for item in node.elts]
+        items = [self._compile_argument(item) for item in node.elts]
         start, end = self._offsets(node)
 
         def display(env: Environment) -> Any:
             try:
-                return charge_value(env.session.budget, build(_arguments(env, items, [])[0]))
+                return charge_value(env.session.budget, build(_evaluate_arguments(env, items, [])[0]))
             except (RefusalError, TypeError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -569,7 +569,7 @@ _METHODS: dict[type[ast.AST], Callable[[Compiler, Any], Closure]] = {
 """The methods that compile nodes, by class of node."""
 
 
-def _arguments(
+def _evaluate_arguments(
     env: Environment, positional: list[tuple[bool, Closure]], named: list[tuple[str | None, Closure]]
 ) -> tuple[list[Any], dict[str, Any]]:
     arguments: list[Any] = []

@@ -310,11 +310,11 @@ class Template:
     def __init__(self, text: str) -> None:
         self.may_change_values = False
         tokens = tokenize(text)
-        parts = [None if token.kind is TokenKind.TEXT else self._part(token) for token in tokens]
+        parts = [None if token.kind is TokenKind.TEXT else self._compile_part(token) for token in tokens]
         single_part = parts[0] if len(parts) == 1 else None
-        self.evaluate: _Part = single_part or _joined_parts([token.text for token in tokens], parts)
+        self.evaluate: _Part = single_part or _join_parts([token.text for token in tokens], parts)
 
-    def _part(self, token: Token) -> _Part:
+    def _compile_part(self, token: Token) -> _Part:
         kind, text, start, end = token
         if "$" in text:
             return self._nested(token)
@@ -375,7 +375,7 @@ def _with_offsets(evaluate: _Part, start: int, end: int) -> _Part:
     return part
 
 
-def _joined_parts(texts: list[str], parts: list[_Part | None]) -> _Part:
+def _join_parts(texts: list[str], parts: list[_Part | None]) -> _Part:
     """Return a function that evaluates the parts of a text and joins their values to a string.
 
     If a part is None, the text at the same index is used instead.

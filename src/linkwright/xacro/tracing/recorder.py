@@ -117,7 +117,7 @@ class Recorder:
         name = _evaluate_again(expander, node, "name", site.scope)
         if name is None or name not in site.parent.attributes:
             return
-        values = self._values(expander, node.attributes["value"], site.scope)
+        values = self._evaluate_references(expander, node.attributes["value"], site.scope)
         setting = Setting(node, name, site.parent.attributes[name], session.frame, values)
         self._settings.append(setting)
         self._keepalive.append(site.parent)
@@ -153,7 +153,7 @@ class Recorder:
         elif isinstance(target, Text):
             record = self.record_of(element)
             if record is not None:
-                record.texts.append((target, self._values(expander, target.data, site.scope)))
+                record.texts.append((target, self._evaluate_references(expander, target.data, site.scope)))
             return
         elif isinstance(target, Element) and target.tag == "xacro:macro":
             self._begin_macro(expander, target, site.scope)
@@ -162,7 +162,7 @@ class Recorder:
             moment = ElementRecord(target, expander.session.frame)
             for name, text in target.attributes.items():
                 if "$" in text:
-                    moment.values[name] = self._values(expander, text, site.scope)
+                    moment.values[name] = self._evaluate_references(expander, text, site.scope)
             target = moment
             self._remember(element, moment)
         element.children.append(recorded_probe(target))
@@ -177,22 +177,24 @@ class Recorder:
         values = {}
         for parameter in parse_parameters(macro.attributes.get("params", "")):
             if not parameter.is_block and parameter.name in scope.values:
-                values[parameter.name] = _parameter_value(parameter, scope.values[parameter.name], frame.site, macro)
+                values[parameter.name] = _make_parameter_value(
+                    parameter, scope.values[parameter.name], frame.site, macro
+                )
         self._keepalive += [scope, frame]
         self._parameters[id(scope)] = values
         self._frame_parameters[id(frame)] = tuple(values.values())
 
     # values
 
-    def _values(self, expander: Expander, text: str, scope: Scope) -> tuple[Value, ...]:
+    def _evaluate_references(self, expander: Expander, text: str, scope: Scope) -> tuple[Value, ...]:
         if "$" not in text:
             return ()
-        values = (self._value(expander, reference, scope) for reference in references(text))
+        values = (self._evaluate_reference(expander, reference, scope) for reference in references(text))
         return tuple(value for value in values if value is not None)
 
-    def _value(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
+    def _evaluate_reference(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
         if reference.command is not None:
-            return self._substitution_value(expander, reference, scope)
+            return self._evaluate_substitution(expander, reference, scope)
         owner = _defining_scope(scope, reference.name)
         if owner is None or owner.parent is None:
             return None  # the language provides this name
@@ -222,7 +224,7 @@ class Recorder:
         attribute = "value" if "value" in node.attributes else "default"
         return node.attribute_span(attribute), written_attribute(node, attribute)
 
-    def _substitution_value(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
+    def _evaluate_substitution(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
         value = _try_evaluate(expander, reference.path, scope)
         if value is _UNEVALUATED:
             return None
@@ -261,7 +263,7 @@ def _defining_scope(scope: Scope, name: str) -> Scope | None:
     return holder
 
 
-def _parameter_value(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
+def _make_parameter_value(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
     """Return a parameter's value in a call, and the location of the argument or default."""
     text = format_value(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:

@@ -51,7 +51,7 @@ class Reference(NamedTuple):
 
 def references(text: str) -> list[Reference]:
     """Return the references in a text without repeated paths, in the order of the text."""
-    unique_references = dict.fromkeys(_references(text))
+    unique_references = dict.fromkeys(_find_references(text))
     return list(unique_references)
 
 
@@ -76,7 +76,7 @@ def written_attribute(element: Any, name: str) -> str | None:
     return source.text[value_range[0] : value_range[1]] if value_range else None
 
 
-def _references(text: str) -> Iterator[Reference]:
+def _find_references(text: str) -> Iterator[Reference]:
     try:
         tokens = tokenize(text)
     except Fault:
@@ -85,20 +85,20 @@ def _references(text: str) -> Iterator[Reference]:
         if kind is TokenKind.TEXT:
             continue
         if "$" in content:
-            yield from _references(content)
+            yield from _find_references(content)
         if kind is TokenKind.SUBSTITUTION:
-            yield from _substitution_references(content)
+            yield from _find_in_substitution(content)
         else:
-            yield from _expression_references(content)
+            yield from _find_in_expression(content)
 
 
-def _substitution_references(content: str) -> Iterator[Reference]:
+def _find_in_substitution(content: str) -> Iterator[Reference]:
     words = content.split()
     if len(words) >= 2 and words[0] in ("arg", "find", "env", "optenv"):
         yield Reference(f"$({content})", words[1], words[0])
 
 
-def _expression_references(content: str) -> Iterator[Reference]:
+def _find_in_expression(content: str) -> Iterator[Reference]:
     paths = _PathCollector()
     try:
         paths.visit(ast.parse(content.strip(), mode="eval"))

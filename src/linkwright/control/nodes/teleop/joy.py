@@ -22,7 +22,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handl
 
 _DEPTH = 10
 _RETRY_SECONDS = 1.0
-_MAX_RATE = 1000.0
+_MAX_RATE_HZ = 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,7 +228,7 @@ def deflection(value: int, deadzone: float) -> float:
 
 def _settings(node: Node, number: int, name: str, path: Path | None, coalesce: float) -> _Settings:
     deadzone = _number_in_range(node, "deadzone", 0.05, 0.0, 1.0)
-    repeat_rate = _number_in_range(node, "autorepeat_rate", 20.0, 0.0, _MAX_RATE)
+    repeat_rate = _number_in_range(node, "autorepeat_rate", 20.0, 0.0, _MAX_RATE_HZ)
     sticky: bool = node.declare_parameter("sticky_buttons", False).value
     return _Settings(number, name, path, deadzone, repeat_rate, coalesce, sticky)
 

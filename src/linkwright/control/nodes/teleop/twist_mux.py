@@ -54,7 +54,7 @@ class _Source:
         )
 
     @property
-    def is_silent(self) -> bool:
+    def has_no_messages(self) -> bool:
         """Whether no message has arrived yet."""
         return self._latest_message_ns is None
 
@@ -85,17 +85,17 @@ class TwistMux(SingleNode):
         node.declare_parameters_from_overrides()
         if not node.has_parameter("use_stamped"):
             node.declare_parameter("use_stamped", False)
-        kind = TWIST_STAMPED if node.get_parameter("use_stamped").value else TWIST
+        message_type = TWIST_STAMPED if node.get_parameter("use_stamped").value else TWIST
         self._topics, self._locks = _read_sources(node, "topics"), _read_sources(node, "locks")
         if not self._topics:
             node.get_logger().warning(
                 localized(phrase("no parameter topics.NAME.topic is set, so nothing is forwarded"))
             )
-        self._publisher: Publisher[Any] = node.create_publisher(kind, "cmd_vel_out", _DEPTH)
+        self._publisher: Publisher[Any] = node.create_publisher(message_type, "cmd_vel_out", _DEPTH)
         self._commander = Commander(partial(send_stop, node, self._publisher))
         for source in self._topics:
             velocities: Subscription[Any] = node.create_subscription(
-                kind, source.topic, partial(self._on_velocity, source, DriverWatch.of(node)), _DEPTH
+                message_type, source.topic, partial(self._on_velocity, source, DriverWatch.of(node)), _DEPTH
             )
             self._commander.watch(velocities)
         for source in self._locks:
@@ -131,7 +131,7 @@ class TwistMux(SingleNode):
         return max((lock.priority for lock in self._locks if lock.locked or lock.is_expired(now_ns)), default=0)
 
     def _is_masked(self, source: _Source, lock_priority: int, now_ns: int) -> bool:
-        return source.is_silent or source.is_expired(now_ns) or source.priority < lock_priority
+        return source.has_no_messages or source.is_expired(now_ns) or source.priority < lock_priority
 
     def _health(self) -> Health:
         now_ns = self._now_ns()

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Phrase, did_you_mean, phrase, quoted_names
 from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.markup.entity import Entity, parse_texts
+from linkwright.launch.model.markup.entity import Entity, parse_attributes
 from linkwright.launch.model.markup.expose import expose_action
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
@@ -92,7 +92,7 @@ class DeclareLaunchArgument(Action):
         """
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.escape_characters(entity.get_attr("name"))
-        kwargs.update(parse_texts(entity, parser, default_value="default"))
+        kwargs.update(parse_attributes(entity, parser, default_value="default"))
         description = entity.get_attr("description", optional=True)
         if description is not None:
             kwargs["description"] = parser.escape_characters(description)

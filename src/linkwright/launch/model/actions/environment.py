@@ -15,7 +15,7 @@ from linkwright.launch.model.actions.named import (
     perform_pairs,
 )
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.markup.entity import parse_texts
+from linkwright.launch.model.markup.entity import parse_attributes
 from linkwright.launch.model.markup.expose import expose_action
 from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution, read_boolean
 from linkwright.launch.model.substitution import (
@@ -77,7 +77,7 @@ class AppendEnvironmentVariable(AssigningAction):
         prepend = entity.get_attr("prepend", optional=True, data_type=bool, can_be_str=True)
         if prepend is not None:
             kwargs["prepend"] = parser.parse_if_substitutions(prepend)
-        return cls, {**kwargs, **parse_texts(entity, parser, separator="separator")}
+        return cls, {**kwargs, **parse_attributes(entity, parser, separator="separator")}
 
     @property
     def prepend(self) -> Any:

@@ -221,7 +221,7 @@ class ExecuteLocal(Action):
             hint = phrase("create a new action for each start, for example in a function")
             raise error_at(self.source_location, "LAUNCH141", message, hint, ros_error=RuntimeError(text))
         plan = self._plan(context, command)
-        name = context.session.number_process(plan.name)
+        name = context.session.assign_process_name(plan.name)
         description = self._description
         description.final_name, description.final_cmd = name, list(plan.command)
         description.final_cwd, description.final_env = plan.folder, dict(plan.environment)
@@ -400,7 +400,7 @@ class ExecuteProcess(ExecuteLocal):
         description = self._description
         plan = HostedPlan(
             self,
-            context.session.number_process(description.base_name(context, arguments)),
+            context.session.assign_process_name(description.base_name(context, arguments)),
             replacement.package,
             replacement.executable,
             None,
@@ -411,7 +411,7 @@ class ExecuteProcess(ExecuteLocal):
             destinations=self._destinations(context),
         )
         description.final_name, description.final_cmd = plan.process_name, list(arguments)
-        context.session.host.plan(plan)
+        context.session.host.schedule_node(plan)
         return True
 
     @property

@@ -117,7 +117,7 @@ class Parser(Protocol):
         """Return the text with its backslash escapes resolved."""
 
 
-def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
+def parse_attributes(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
     """Return keyword arguments for the given attributes that the tag has.
 
     Args:

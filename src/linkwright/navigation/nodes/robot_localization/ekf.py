@@ -67,14 +67,15 @@ class EkfNode(SingleNode):
         self._publisher = node.create_publisher(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", 10)
         self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS)
         if self._configuration.publishes_acceleration:
-            kind = get_message("geometry_msgs/msg/AccelWithCovarianceStamped")
-            self._acceleration_publisher = node.create_publisher(kind, "accel/filtered", 10)
+            acceleration_class = get_message("geometry_msgs/msg/AccelWithCovarianceStamped")
+            self._acceleration_publisher = node.create_publisher(acceleration_class, "accel/filtered", 10)
         if self._configuration.publishes_diagnostics:
             DiagnosticUpdater(node, "Filter diagnostic updater", self._health)
         if self._configuration.filter.control is not None:
             is_stamped: bool = node.get_parameter("stamped_control").value
-            kind = get_message(f"geometry_msgs/msg/Twist{'Stamped' if is_stamped else ''}")
-            node.create_subscription(kind, "cmd_vel", self._on_stamped_command if is_stamped else self._on_command, 1)
+            command_class = get_message(f"geometry_msgs/msg/Twist{'Stamped' if is_stamped else ''}")
+            on_command = self._on_stamped_command if is_stamped else self._on_command
+            node.create_subscription(command_class, "cmd_vel", on_command, 1)
         node.create_subscription(pose, "set_pose", self._set_pose, 1)
         node.create_service(get_service("robot_localization/srv/SetPose"), "set_pose", self._on_set_pose)
         node.create_service(get_service("robot_localization/srv/ToggleFilterProcessing"), "toggle", self._on_toggle)

@@ -108,8 +108,8 @@ class NavsatTransformNode(SingleNode):
         node = self._node
         self._publisher = node.create_publisher(get_message("nav_msgs/msg/Odometry"), "odometry/gps", 10)
         if self._publishes_fixes:
-            kind = get_message("sensor_msgs/msg/NavSatFix")
-            self._fix_publisher = node.create_publisher(kind, "gps/filtered", 10)
+            fix_class = get_message("sensor_msgs/msg/NavSatFix")
+            self._fix_publisher = node.create_publisher(fix_class, "gps/filtered", 10)
         if self._broadcasts_transform:
             self._tf_publisher = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
         node.create_subscription(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", self._on_odometry, 10)

@@ -8,8 +8,8 @@ from typing import Any
 from linkwright.messages import get_message
 from linkwright.navigation.slam.pose_graph import PoseGraph
 
-_SPHERE_DIAMETER = 0.1
-_LINE_WIDTH = 0.02
+_SPHERE_DIAMETER_M = 0.1
+_LINE_WIDTH_M = 0.02
 
 
 def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
@@ -23,28 +23,28 @@ def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
     edges = list(zip(graph.first, graph.second, strict=True))
     consecutive_edges = [(first, second) for first, second in edges if second == first + 1]
     other_edges = [(first, second) for first, second in edges if second != first + 1]
-    kind = get_message("visualization_msgs/msg/Marker")
+    marker_class = get_message("visualization_msgs/msg/Marker")
     for number, (shape, size, color, marker_points) in enumerate(
         (
-            (kind.SPHERE_LIST, _SPHERE_DIAMETER, (1.0, 0.0, 0.0), points),
+            (marker_class.SPHERE_LIST, _SPHERE_DIAMETER_M, (1.0, 0.0, 0.0), points),
             (
-                kind.LINE_LIST,
-                _LINE_WIDTH,
+                marker_class.LINE_LIST,
+                _LINE_WIDTH_M,
                 (0.0, 0.0, 1.0),
                 [points[index] for index in chain.from_iterable(consecutive_edges)],
             ),
             (
-                kind.LINE_LIST,
-                _LINE_WIDTH,
+                marker_class.LINE_LIST,
+                _LINE_WIDTH_M,
                 (0.0, 0.8, 0.0),
                 [points[index] for index in chain.from_iterable(other_edges)],
             ),
         )
     ):
-        marker = kind()
+        marker = marker_class()
         marker.header.frame_id, marker.header.stamp = frame, stamp
         marker.ns, marker.id, marker.type = "slam_toolbox", number, shape
-        marker.action = kind.ADD if marker_points else kind.DELETE
+        marker.action = marker_class.ADD if marker_points else marker_class.DELETE
         marker.pose.orientation.w = 1.0
         marker.scale.x = marker.scale.y = marker.scale.z = size
         marker.color.r, marker.color.g, marker.color.b = color

@@ -43,12 +43,12 @@ class ToolboxServices:
             services.append(("set_localization_mode", "std_srvs/srv/SetBool", self._on_switch))
         node = toolbox.node
         self._endpoints: list[Any] = [
-            node.create_service(get_service(kind), f"slam_toolbox/{name}", callback)
-            for name, kind, callback in services
+            node.create_service(get_service(service_type), f"slam_toolbox/{name}", callback)
+            for name, service_type, callback in services
         ]
         if toolbox.localizes or can_switch:
-            kind = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
-            self._endpoints.append(node.create_subscription(kind, "/initialpose", self._on_initial_pose, 1))
+            pose_class = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
+            self._endpoints.append(node.create_subscription(pose_class, "/initialpose", self._on_initial_pose, 1))
 
     def close(self) -> None:
         """Remove the services and the subscription."""

@@ -41,7 +41,7 @@ from linkwright.navigation.slam.storage import graph_path, load_graph
 _LOOKUP_PERIOD = 0.05
 """The seconds between lookups of a transform that a scan waits for, if no transforms are published."""
 _MAX_QUIET_QUEUE = 10
-_WARNING_PERIOD = 5.0
+_WARNING_PERIOD_S = 5.0
 
 
 class Toolbox:
@@ -91,8 +91,8 @@ class Toolbox:
         self._metadata_publisher = node.create_publisher(
             message("nav_msgs/msg/MapMetaData"), f"{name}_metadata", LATCHED_QOS
         )
-        kind = message("visualization_msgs/msg/MarkerArray")
-        self._graph_publisher = node.create_publisher(kind, "slam_toolbox/graph_visualization", 1)
+        markers_class = message("visualization_msgs/msg/MarkerArray")
+        self._graph_publisher = node.create_publisher(markers_class, "slam_toolbox/graph_visualization", 1)
         self._transforms = node.create_publisher(TFMessage, "/tf", TF_QOS)
         self._step_guard = node.create_guard_condition(self._step)
         self._jump_guard = node.create_guard_condition(self._on_time_jump)
@@ -226,7 +226,7 @@ class Toolbox:
             if self.node.get_clock().now_ns() - received_ns >= settings.transform_timeout_ns:
                 self._pending_scan = None
                 self.node.get_logger().warning(
-                    f"Failed to compute odom pose, scans are dropped: {error}", throttle_duration_sec=_WARNING_PERIOD
+                    f"Failed to compute odom pose, scans are dropped: {error}", throttle_duration_sec=_WARNING_PERIOD_S
                 )
             return
         self._pending_scan = None
@@ -246,7 +246,7 @@ class Toolbox:
             self.node.get_logger().warning(
                 f"Queue size has grown to: {len(self.queue)}. Recommend stopping until message is gone if online "
                 "mapping.",
-                throttle_duration_sec=_WARNING_PERIOD,
+                throttle_duration_sec=_WARNING_PERIOD_S,
             )
         if not is_busy:
             self._process_next_scan()
@@ -268,7 +268,7 @@ class Toolbox:
         if self.localizes and not self.mapper.scans:
             self.node.get_logger().error(
                 "There is no map to localize in: set map_file_name, or call slam_toolbox/deserialize_map",
-                throttle_duration_sec=_WARNING_PERIOD,
+                throttle_duration_sec=_WARNING_PERIOD_S,
             )
             return
         self._processed_odometry = odometry
@@ -309,7 +309,7 @@ class Toolbox:
         self._map_to_odom = compose(outcome.pose, inverse(self._processed_odometry))
         if outcome.loop_count:
             self.node.get_logger().info(
-                f"closed a loop after {len(self.mapper.scans)} scans", throttle_duration_sec=_WARNING_PERIOD
+                f"closed a loop after {len(self.mapper.scans)} scans", throttle_duration_sec=_WARNING_PERIOD_S
             )
         message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
         message.header.frame_id = self.settings.map_frame

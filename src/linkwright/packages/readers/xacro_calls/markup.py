@@ -47,7 +47,7 @@ def read_xml(source: SourceText) -> CallingFile:
             }
             file.inclusions.append(Inclusion(values["file"], arguments))
         for key, value in element.attributes.items():
-            lines = [values[key]] if key == "command" else list(_commands(value, source.name))
+            lines = [values[key]] if key == "command" else list(_find_commands(value, source.name))
             _record_calls(file, lines, element.attribute_span(key))
     return file
 
@@ -97,7 +97,7 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
             }
             file.inclusions.append(Inclusion(parse_markup_text(str(attributes["file"]), source.name), arguments))
         for text in _strings(value):
-            _record_calls(file, list(_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
+            _record_calls(file, list(_find_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
         for nested_entity in value if isinstance(value, list) else ():
             _read_entity(nested_entity, source, file)
 
@@ -130,14 +130,14 @@ def parse_markup_text(text: str, file: str) -> Text:
     """
     pieces: list[str | Share | Placeholder] = []
     position = 0
-    for start, end in _substitutions(text):
+    for start, end in _find_substitutions(text):
         pieces += literal(text[position:start])
-        pieces += _substitution_text(text[start + 2 : end - 1], file)
+        pieces += _read_substitution(text[start + 2 : end - 1], file)
         position = end
     return (*pieces, *literal(text[position:]))
 
 
-def _substitutions(text: str) -> Iterator[tuple[int, int]]:
+def _find_substitutions(text: str) -> Iterator[tuple[int, int]]:
     """Yield the start and end offsets of the outermost ``$(...)`` in a text."""
     start = text.find("$(")
     while start >= 0:
@@ -151,7 +151,7 @@ def _substitutions(text: str) -> Iterator[tuple[int, int]]:
         start = text.find("$(", end)
 
 
-def _substitution_text(content: str, file: str) -> Text:
+def _read_substitution(content: str, file: str) -> Text:
     match = _TAG_AND_REST.match(content)
     if match is None:
         return (UNKNOWN,)
@@ -170,15 +170,15 @@ def _substitution_text(content: str, file: str) -> Text:
     return (UNKNOWN,)
 
 
-def _commands(text: str, file: str) -> Iterator[Text]:
+def _find_commands(text: str, file: str) -> Iterator[Text]:
     """Yield the command lines in the ``$(command ...)`` of a text."""
-    for start, end in _substitutions(text):
+    for start, end in _find_substitutions(text):
         match = _TAG_AND_REST.match(text[start + 2 : end - 1])
         if match is not None and match[1] == "command":
-            yield _command_line(match[2].strip(), file)
+            yield _read_command_line(match[2].strip(), file)
 
 
-def _command_line(argument: str, file: str) -> Text:
+def _read_command_line(argument: str, file: str) -> Text:
     """Return the first argument of ``$(command ...)``, without the quotes around several words."""
     quote = argument[:1]
     if quote in ("'", '"'):

@@ -25,18 +25,18 @@ def read_python(source: SourceText) -> CallingFile:
     """
     file = CallingFile(source.name)
     try:
-        python = PythonFile(source)
-        _Reader(python, file).read()
+        python_file = PythonFile(source)
+        _Reader(python_file, file).read()
     except (SyntaxError, ValueError, RecursionError):
         return CallingFile(source.name)
     return file
 
 
 class _Reader:
-    def __init__(self, python: PythonFile, file: CallingFile) -> None:
-        self._python = python
+    def __init__(self, python_file: PythonFile, file: CallingFile) -> None:
+        self._python_file = python_file
         self._file = file
-        self._nodes = walk(python.tree)
+        self._nodes = walk(python_file.tree)
         functions = {node.name for node, _ in self._nodes if isinstance(node, Function)}
         calls: dict[str, list[tuple[ast.Call, Scope]]] = {}
         for node, scope in self._nodes:
@@ -168,7 +168,7 @@ class _Reader:
         self, call: tuple[Text, dict[str, Text]] | None, node: ast.expr, *, is_command: bool = False
     ) -> None:
         if call is not None:
-            self._file.calls.append(XacroCall(*call, self._python.span(node), is_command))
+            self._file.calls.append(XacroCall(*call, self._python_file.span(node), is_command))
 
 
 def _assigned_expressions(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:

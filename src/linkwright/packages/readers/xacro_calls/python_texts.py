@@ -82,7 +82,7 @@ class PythonTexts:
             return _UNKNOWN_TEXT
         self._depth += 1
         try:
-            return self._value(node, scope)
+            return self._evaluate(node, scope)
         finally:
             self._depth -= 1
 
@@ -90,15 +90,15 @@ class PythonTexts:
         """Return the text of an expression, with the texts of several items concatenated."""
         return _as_text(self.value(node, scope))
 
-    def _value(self, node: ast.expr, scope: Scope) -> Value:
+    def _evaluate(self, node: ast.expr, scope: Scope) -> Value:
         if isinstance(node, ast.Constant):
             return literal(str(node.value)) if isinstance(node.value, (str, int, float)) else _UNKNOWN_TEXT
         if isinstance(node, ast.Name):
             return self._name(node.id, scope)
         if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
-            return Items(tuple(self._items(node.elts, scope)))
+            return Items(tuple(self._evaluate_items(node.elts, scope)))
         if isinstance(node, ast.Dict):
-            return self._entries(node, scope)
+            return self._evaluate_entries(node, scope)
         if isinstance(node, ast.JoinedStr):
             return joined(self.text(piece, scope) for piece in node.values)
         if isinstance(node, ast.FormattedValue):
@@ -106,16 +106,16 @@ class PythonTexts:
         if isinstance(node, ast.BinOp):
             return self._operation(node, scope)
         if isinstance(node, ast.IfExp):
-            return self._alternative_value(node, [self.value(node.body, scope), self.value(node.orelse, scope)])
+            return self._combine_alternatives(node, [self.value(node.body, scope), self.value(node.orelse, scope)])
         if isinstance(node, ast.BoolOp):
             return self.value(node.values[0], scope)
         if isinstance(node, ast.Subscript):
-            return self._item(node, scope)
+            return self._evaluate_item(node, scope)
         if isinstance(node, ast.Call):
             return self._call(node, scope)
         return _UNKNOWN_TEXT
 
-    def _items(self, nodes: Sequence[ast.expr], scope: Scope) -> list[Value]:
+    def _evaluate_items(self, nodes: Sequence[ast.expr], scope: Scope) -> list[Value]:
         values: list[Value] = []
         for node in nodes:
             if isinstance(node, ast.Starred):
@@ -125,12 +125,12 @@ class PythonTexts:
                 values.append(self.value(node, scope))
         return values
 
-    def _entries(self, node: ast.Dict, scope: Scope) -> Value:
+    def _evaluate_entries(self, node: ast.Dict, scope: Scope) -> Value:
         entries: dict[str, Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             entry_value = self.value(value, scope)
             if key is None:
-                entries.update(_known_entries(entry_value))
+                entries.update(_get_known_entries(entry_value))
             elif entry_name := _plain_string(self.text(key, scope)):
                 entries[entry_name] = entry_value
             else:
@@ -150,7 +150,7 @@ class PythonTexts:
                 return _interleave(fragments, texts)
         return _UNKNOWN_TEXT
 
-    def _item(self, node: ast.Subscript, scope: Scope) -> Value:
+    def _evaluate_item(self, node: ast.Subscript, scope: Scope) -> Value:
         if isinstance(node.value, ast.Attribute) and node.value.attr == "launch_configurations":
             return self._launch_argument(node.slice, None, scope)
         owner = self.value(node.value, scope)
@@ -198,7 +198,7 @@ class PythonTexts:
         if name == "dict" and not node.args:
             return Entries({keyword.arg: self.value(keyword.value, scope) for keyword in node.keywords if keyword.arg})
         if name == "product":
-            return Items((Items(tuple(self._item_value(arg, scope) for arg in node.args)),))
+            return Items((Items(tuple(self._evaluate_any_item(arg, scope) for arg in node.args)),))
         if name in _IDENTITY_METHODS and owner is not None:
             return self.value(owner, scope)
         if name in _IDENTITY_FUNCTIONS and first is not None:
@@ -214,7 +214,7 @@ class PythonTexts:
         return (launch_argument(argument_name),)
 
     def _joined_path(self, node: ast.Call, name: str, owner: ast.expr | None, scope: Scope) -> Value:
-        parts = self._items(node.args, scope)
+        parts = self._evaluate_items(node.args, scope)
         if name == "PathJoinSubstitution":
             path_components = parts[0] if parts else None
             parts = list(path_components.values) if isinstance(path_components, Items) else []
@@ -253,18 +253,18 @@ class PythonTexts:
         key = (id(defining_scope), name)
         if key not in self._names:
             self._names[key] = _UNKNOWN_TEXT  # end the recursion for a name that depends on itself
-            value = self._bindings_value(name, defining_scope, bindings)
+            value = self._evaluate_bindings(name, defining_scope, bindings)
             self._names[key] = _UNKNOWN_TEXT if isinstance(value, tuple) and len(value) > _MAX_PIECES else value
         return self._names[key]
 
-    def _bindings_value(self, name: str, defining_scope: Scope, bindings: Sequence[Binding]) -> Value:
+    def _evaluate_bindings(self, name: str, defining_scope: Scope, bindings: Sequence[Binding]) -> Value:
         if not bindings and defining_scope.function is not None:
             return self._parameter(name, defining_scope)
-        values = [self._binding_value(binding, defining_scope) for binding in bindings if not binding.is_added]
-        value = values[0] if len(values) == 1 else self._alternative_value(bindings[0].value, values)
+        values = [self._evaluate_binding(binding, defining_scope) for binding in bindings if not binding.is_added]
+        value = values[0] if len(values) == 1 else self._combine_alternatives(bindings[0].value, values)
         for binding in bindings:
             if binding.is_added:
-                value = _add_values(value, self._binding_value(binding, defining_scope))
+                value = _add_values(value, self._evaluate_binding(binding, defining_scope))
         if isinstance(value, Entries) and name in defining_scope.entries:
             added_entries = {
                 _plain_string(self.text(key, defining_scope)) or "": self.value(item, defining_scope)
@@ -273,13 +273,13 @@ class PythonTexts:
             value = Entries({**value.values, **added_entries, **(UNKNOWN_ENTRIES if "" in added_entries else {})})
         return value
 
-    def _binding_value(self, binding: Binding, scope: Scope) -> Value:
-        value = self._item_value(binding.value, scope) if binding.is_item else self.value(binding.value, scope)
+    def _evaluate_binding(self, binding: Binding, scope: Scope) -> Value:
+        value = self._evaluate_any_item(binding.value, scope) if binding.is_item else self.value(binding.value, scope)
         for index in binding.path:
             value = value.values[index] if isinstance(value, Items) and index < len(value.values) else _UNKNOWN_TEXT
         return value
 
-    def _item_value(self, node: ast.expr | None, scope: Scope) -> Value:
+    def _evaluate_any_item(self, node: ast.expr | None, scope: Scope) -> Value:
         """Return a value that represents any item of an iterable expression."""
         value = self.value(node, scope)
         if not isinstance(value, Items):
@@ -288,7 +288,7 @@ class PythonTexts:
             value.values[0] if len(value.values) == 1 else self._choice_placeholder(node, value.values, is_certain=True)
         )
 
-    def _alternative_value(self, node: ast.expr | None, values: Sequence[Value]) -> Value:
+    def _combine_alternatives(self, node: ast.expr | None, values: Sequence[Value]) -> Value:
         """Return a value that represents one of several values under unknown conditions."""
         known_values = [value for value in values if value != _UNKNOWN_TEXT]
         if len(known_values) < 2 or not all(isinstance(item, tuple) for item in known_values):
@@ -322,7 +322,7 @@ class PythonTexts:
             if isinstance(decorator, ast.Call) and called_name(decorator).endswith("parametrize") and decorator.args:
                 names = self._parametrized_names(decorator.args[0], outer_scope)
                 if name in names and len(decorator.args) > 1:
-                    value = self._item_value(decorator.args[1], outer_scope)
+                    value = self._evaluate_any_item(decorator.args[1], outer_scope)
                     if len(names) == 1:
                         return value
                     return value.values[names.index(name)] if isinstance(value, Items) else _UNKNOWN_TEXT
@@ -336,7 +336,7 @@ class PythonTexts:
         if not values:  # all callers are in other files
             value = self.value(default, outer_scope)
             return Entries({**value.values, **UNKNOWN_ENTRIES}) if isinstance(value, Entries) else value
-        return values[0] if len(values) == 1 else self._alternative_value(call, values)
+        return values[0] if len(values) == 1 else self._combine_alternatives(call, values)
 
     def _parametrized_names(self, node: ast.expr, scope: Scope) -> list[str]:
         value = self.value(node, scope)
@@ -357,13 +357,13 @@ def _as_text(value: Value) -> Text:
     return _UNKNOWN_TEXT if isinstance(value, Entries) else value
 
 
-def _known_entries(value: Value) -> Mapping[str, Value]:
+def _get_known_entries(value: Value) -> Mapping[str, Value]:
     return value.values if isinstance(value, Entries) else UNKNOWN_ENTRIES
 
 
 def _add_values(left: Value, right: Value) -> Value:
     if isinstance(left, Entries):
-        return Entries({**left.values, **_known_entries(right)})
+        return Entries({**left.values, **_get_known_entries(right)})
     if isinstance(left, Items) and isinstance(right, Items):
         return Items((*left.values, *right.values))
     if isinstance(left, tuple) and isinstance(right, tuple):

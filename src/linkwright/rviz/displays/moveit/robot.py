@@ -224,8 +224,8 @@ class PosableRobot:
             color = look.links.get(name)
             if color is None and look.color is not None:
                 color = (*look.color, 1.0)
-            for number, shape in enumerate(shapes):
-                marker_name = f"{name} {number}" if number else name
+            for index, shape in enumerate(shapes):
+                marker_name = f"{name} {index}" if index else name
                 red, green, blue, opacity = color or _description_color(shape)
                 rgba = (red, green, blue, opacity * alpha)
                 placement = _MarkerPlacement(look.namespace, marker_name, frame, compose(pose, _pose_in_link(shape)))
@@ -253,9 +253,9 @@ class _MarkerPlacement:
     def marker(self, kind: MarkerKind, scale: list[float], color: Color, mesh: MarkerMesh | None = None) -> MarkerShape:
         return make_marker(self.namespace, self.name, kind, self.pose, scale, color, frame=self.frame, mesh=mesh)
 
-    def end(self, number: int, z: float) -> _MarkerPlacement:
+    def end(self, index: int, z: float) -> _MarkerPlacement:
         pose = compose(self.pose, (0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0))
-        return _MarkerPlacement(self.namespace, f"{self.name} end {number}", self.frame, pose)
+        return _MarkerPlacement(self.namespace, f"{self.name} end {index}", self.frame, pose)
 
 
 def _shape_markers(shape: Shape, placement: _MarkerPlacement, color: Color, *, is_painted: bool) -> list[MarkerShape]:
@@ -272,7 +272,7 @@ def _shape_markers(shape: Shape, placement: _MarkerPlacement, color: Color, *, i
     cylinder = placement.marker("cylinder", [2.0 * radius, 2.0 * radius, length], color)
     if shape.kind == "cylinder":
         return [cylinder]
-    ends = (placement.end(number, sign * length / 2.0) for number, sign in enumerate((-1.0, 1.0)))
+    ends = (placement.end(index, sign * length / 2.0) for index, sign in enumerate((-1.0, 1.0)))
     return [cylinder, *(at_end.marker("sphere", sphere_size, color) for at_end in ends)]
 
 

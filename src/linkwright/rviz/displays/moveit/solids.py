@@ -67,12 +67,12 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
                     poses=len(poses),
                 )
             )
-        for number, shape in enumerate(shapes):
-            pose = compose(object_pose, _pose(poses[number])) if poses else object_pose
+        for index, shape in enumerate(shapes):
+            pose = compose(object_pose, _pose(poses[index])) if poses else object_pose
             kind, scale, points = make_form(shape)
             if not all(map(math.isfinite, (*pose, *scale))) or not np.isfinite(points).all():
                 raise BadObjectError(phrase("Contains invalid floating point values (nans or infs)"))
-            name = f"{message.id} {kind_name} {number}" if shape_markers else message.id
+            name = f"{message.id} {kind_name} {index}" if shape_markers else message.id
             shape_markers.append(make_marker(namespace, name, kind, pose, scale, color, frame=frame, points=points))
     return shape_markers
 

@@ -20,7 +20,7 @@ from linkwright.rviz.displays.moveit.robot import JointPositions, PosableRobot, 
 _SECONDS = re.compile(r"([0-9]*\.?[0-9]+)\s*s?")
 _FACTOR = re.compile(r"([0-9]*\.?[0-9]+)\s*x")
 _LOOP_PROPERTY = "Loop Animation"
-_MIN_WAIT = 0.005
+_MIN_DELAY_S = 0.005
 _MAX_STATES = 100_000
 _MAX_TRAIL_STATES = 200
 """The largest number of states in a trail. Longer trails are drawn with larger steps."""
@@ -207,7 +207,7 @@ class MotionPlayer:
         text = self._display.properties.text(*self._group_path, "State Display Time")
         durations = self.motion.durations
         seconds = display_seconds(text, durations[min(self._state_index, len(durations) - 1)])
-        self._timer = asyncio.get_running_loop().call_later(max(_MIN_WAIT, seconds), self._step)
+        self._timer = asyncio.get_running_loop().call_later(max(_MIN_DELAY_S, seconds), self._step)
 
     def _step(self) -> None:
         self._timer = None

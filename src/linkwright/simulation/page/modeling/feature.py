@@ -273,7 +273,9 @@ class ModelingFeature(PageFeature):
         fields = {"world_resource": world_resource, "ignore_missing_or_unsupported_assets": True}
         await self._call_service(page, _LOAD_SERVICE, "/load_world", fields)
 
-    async def _call_service(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
+    async def _call_service(
+        self, page: Page, service_type: str, name: str, fields: dict[str, Any] | None = None
+    ) -> None:
         """Call a service, wait for the response, and report a timeout to the page."""
         response_arrived: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
@@ -281,7 +283,7 @@ class ModelingFeature(PageFeature):
             if not response_arrived.done():
                 response_arrived.set_result(None)
 
-        self._services.call_service(page, kind, name, fields or {}, on_response)
+        self._services.call_service(page, service_type, name, fields or {}, on_response)
         try:
             await asyncio.wait_for(response_arrived, _TIMEOUT_SECONDS)
         except asyncio.TimeoutError:

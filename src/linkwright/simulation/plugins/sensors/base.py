@@ -21,7 +21,7 @@ SENSOR_QOS = QoSProfile(depth=5)
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrameName:
+class FrameNameParameter:
     """The parameter ``frame_name`` of all sensors of Gazebo classic."""
 
     frame_name: str = parameter("", aliases=("frameName",))
@@ -52,7 +52,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
     def is_wanted(self) -> bool:
         """Return whether a topic of the sensor has a subscription."""
 
-    def is_needed(self) -> bool:
+    def should_measure(self) -> bool:
         """Return whether to measure.
 
         By default, the sensor measures while a topic has a subscription.
@@ -92,27 +92,31 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         parent_topic = f"/world/{self.context.world.name}/model/{model}/{entity_type}/{'/'.join(nested_names[:-1])}"
         return f"{parent_topic}/sensor/{nested_names[-1]}/{leaf}"
 
-    def gz_output(self, kind: str, leaf: str, usual: str = "") -> Output:
+    def gz_output(self, message_type: str, leaf: str, conventional_topic: str = "") -> Output:
         """Create the publisher of a gz sensor, on its declared topic or on gz's default topic.
 
         Args:
-            kind: the message type.
+            message_type: the message type.
             leaf: the last part of the default name.
-            usual: the usual name of such a topic on robots; if empty, ``/`` followed by `leaf`.
+            conventional_topic: the usual name of such a topic on robots; if empty, ``/`` followed by `leaf`.
         """
         topic = self.sensor.sensor.topic
-        return self.node.publisher(kind, topic or self.gz_topic(leaf), usual="" if topic else usual or f"/{leaf}")
+        return self.node.publisher(
+            message_type,
+            topic or self.gz_topic(leaf),
+            conventional_topic="" if topic else conventional_topic or f"/{leaf}",
+        )
 
-    def message(self, kind: str, frame: str) -> Any:
+    def message(self, message_type: str, frame: str) -> Any:
         """Create a message of a type, with the current stamp and a frame in its header."""
-        return get_message(kind)(header=Header(stamp=self.stamp(), frame_id=frame))
+        return get_message(message_type)(header=Header(stamp=self.stamp(), frame_id=frame))
 
     def _measure(self) -> None:
-        if self.is_needed():
+        if self.should_measure():
             self.measure()
 
 
-class OneTopic(SensorPlugin[P], Generic[P]):
+class SingleTopicSensor(SensorPlugin[P], Generic[P]):
     """A sensor with one topic.
 
     Attributes:

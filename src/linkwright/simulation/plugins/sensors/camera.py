@@ -21,7 +21,7 @@ from linkwright.sdf.cameras import Camera
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.optics import Optics, optics_of
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, SensorPlugin
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
 from linkwright.simulation.plugins.sensors.images import (
     DEFAULT_ENCODING,
@@ -108,7 +108,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CameraParameters(FrameName):
+class CameraParameters(FrameNameParameter):
     """Parameters of ``gazebo_ros_camera``, and of ``gazebo_ros_openni_kinect`` of ROS 1."""
 
     camera_name: str = parameter("", aliases=("cameraName",))
@@ -166,22 +166,22 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         self._frame = self.classic_frame()
         is_multicamera = sensor.type == "multicamera"
         bases = [f"{name}/{camera.description.name}" if is_multicamera else name for camera in self.cameras]
-        self._images = [self._output(IMAGE, base, parameters.image_topic_name) for base in bases]
-        self._infos = [self._output(INFO, base, parameters.camera_info_topic_name) for base in bases]
+        self._images = [self._create_output(IMAGE, base, parameters.image_topic_name) for base in bases]
+        self._infos = [self._create_output(INFO, base, parameters.camera_info_topic_name) for base in bases]
         self._depths: list[Output] = []
         if sensor.type in _DEPTH_TYPES:
             self._depths = [
-                self._output(IMAGE, name, parameters.depth_image_topic_name),
-                self._output(INFO, name, parameters.depth_info_topic_name),
-                self._output(CLOUD, name, parameters.point_cloud_topic_name),
+                self._create_output(IMAGE, name, parameters.depth_image_topic_name),
+                self._create_output(INFO, name, parameters.depth_info_topic_name),
+                self._create_output(CLOUD, name, parameters.point_cloud_topic_name),
             ]
         self._is_image_requested = not parameters.triggered
         if parameters.triggered:
-            kind = get_message("std_msgs/msg/Empty")
-            self.node.subscribe(kind, f"{name}/image_trigger", self._trigger)
+            trigger_class = get_message("std_msgs/msg/Empty")
+            self.node.subscribe(trigger_class, f"{name}/image_trigger", self._trigger)
 
-    def _output(self, kind: str, base: str, topic: str) -> Output:
-        return self.node.publisher(kind, topic if topic.startswith("/") else f"{base}/{topic}", SENSOR_QOS)
+    def _create_output(self, message_type: str, base: str, topic: str) -> Output:
+        return self.node.publisher(message_type, topic if topic.startswith("/") else f"{base}/{topic}", SENSOR_QOS)
 
     def _trigger(self, _message: Any) -> None:
         self._is_image_requested = True
@@ -271,9 +271,9 @@ class GzCamera(CameraPlugin[NoParameters]):
         self._optical = camera.optical_frame_id or self._frame
         self._image = self._depth = self._cloud = None
         if kind in ("rgbd_camera", "rgbd"):
-            self._image = self._leaf_output(IMAGE, "image")
-            self._depth = self._leaf_output(IMAGE, "depth_image")
-            self._cloud = self._leaf_output(CLOUD, "points")
+            self._image = self._create_leaf_output(IMAGE, "image")
+            self._depth = self._create_leaf_output(IMAGE, "depth_image")
+            self._cloud = self._create_leaf_output(CLOUD, "points")
         elif kind in _DEPTH_TYPES:
             self._depth = self.gz_output(IMAGE, "depth_image")
             topic = self.sensor.sensor.topic or self.gz_topic("depth_image")
@@ -281,12 +281,16 @@ class GzCamera(CameraPlugin[NoParameters]):
         else:
             self._image = self.gz_output(IMAGE, "image")
         topic = camera.camera_info_topic or self._info_topic()
-        self._info = self.node.publisher(INFO, topic, usual="" if self.sensor.sensor.topic else "/camera_info")
+        self._info = self.node.publisher(
+            INFO, topic, conventional_topic="" if self.sensor.sensor.topic else "/camera_info"
+        )
 
-    def _leaf_output(self, kind: str, leaf: str) -> Output:
+    def _create_leaf_output(self, message_type: str, leaf: str) -> Output:
         topic = self.sensor.sensor.topic
         return self.node.publisher(
-            kind, f"{topic}/{leaf}" if topic else self.gz_topic(leaf), usual="" if topic else f"/{leaf}"
+            message_type,
+            f"{topic}/{leaf}" if topic else self.gz_topic(leaf),
+            conventional_topic="" if topic else f"/{leaf}",
         )
 
     def _info_topic(self) -> str:
@@ -298,12 +302,12 @@ class GzCamera(CameraPlugin[NoParameters]):
         parent_topic, slash, _ = topic.rpartition("/")
         return f"{parent_topic}{slash}camera_info"
 
-    def _outputs(self) -> Iterator[Output]:
+    def _list_outputs(self) -> Iterator[Output]:
         yield from (output for output in (self._image, self._depth, self._cloud, self._info) if output is not None)
 
     def is_wanted(self) -> bool:
         """Return whether a topic has a subscription."""
-        return any(output.is_wanted for output in self._outputs())
+        return any(output.is_wanted for output in self._list_outputs())
 
     def measure(self) -> None:
         """Render and publish the images, points and camera info whose topics have subscriptions."""

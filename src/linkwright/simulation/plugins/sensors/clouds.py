@@ -11,7 +11,7 @@ from linkwright.messages import get_message
 
 _FIELD_TYPES = {np.dtype(np.uint16): 4, np.dtype(np.float32): 7}
 """The data types of sensor_msgs/msg/PointField, by NumPy type."""
-Points = np.ndarray[Any, np.dtype[Any]]
+AnyArray = np.ndarray[Any, np.dtype[Any]]
 
 
 def _layout(size: int, **offsets: int) -> np.dtype[Any]:
@@ -30,19 +30,19 @@ _COLORED = _layout(32, x=0, y=4, z=8, rgb=16)
 
 @cache
 def _fields(layout: np.dtype[Any]) -> tuple[Any, ...]:
-    kind = get_message("sensor_msgs/msg/PointField")
+    field_class = get_message("sensor_msgs/msg/PointField")
     layout_fields = {name: layout.fields[name] for name in layout.names or ()} if layout.fields else {}
     return tuple(
-        kind(name=name, offset=offset, datatype=_FIELD_TYPES[number], count=1)
-        for name, (number, offset, *_) in layout_fields.items()
+        field_class(name=name, offset=offset, datatype=_FIELD_TYPES[dtype], count=1)
+        for name, (dtype, offset, *_) in layout_fields.items()
     )
 
 
 def fill_lidar_cloud(
     message: Any,
-    points: Points,
-    intensities: Points,
-    rings: Points | None = None,
+    points: AnyArray,
+    intensities: AnyArray,
+    rings: AnyArray | None = None,
     *,
     layout: np.dtype[Any] = CLASSIC,
     height: int = 1,
@@ -67,7 +67,7 @@ def fill_lidar_cloud(
     message.is_dense = bool(np.isfinite(points).all() and np.isfinite(intensities).all())
 
 
-def fill_camera_cloud(message: Any, points: Points, color: Points, *, swap_red_blue: bool = False) -> None:
+def fill_camera_cloud(message: Any, points: AnyArray, color: AnyArray, *, swap_red_blue: bool = False) -> None:
     """Fill a PointCloud2 with the points of an image and their colors.
 
     `points` are in m, and `color` contains RGB bytes, both of shape (height, width, 3).
@@ -86,7 +86,7 @@ def fill_camera_cloud(message: Any, points: Points, color: Points, *, swap_red_b
     message.is_dense = False
 
 
-def _fill(message: Any, rows: Points, height: int) -> None:
+def _fill(message: Any, rows: AnyArray, height: int) -> None:
     """Fill a PointCloud2 with points of a structured NumPy type, in `height` rows.
 
     The points have shape (n,).

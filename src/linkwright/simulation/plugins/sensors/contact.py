@@ -13,7 +13,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.messages import get_message
 from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, OneTopic, vector_message
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, SingleTopicSensor, vector_message
 from linkwright.simulation.sensors.contact import Contact, ContactSensor
 
 P = TypeVar("P")
@@ -29,7 +29,7 @@ class BumperParameters:
     topic_name: str = parameter("bumper_states", aliases=("bumperTopicName", "bumper_topic_name"))
 
 
-class _Contacts(OneTopic[P], Generic[P]):
+class _Contacts(SingleTopicSensor[P], Generic[P]):
     """A sensor that measures the contacts of one collision, or of all collisions of its link."""
 
     def create_sensor(self) -> None:
@@ -68,8 +68,10 @@ class GzContact(_Contacts[NoParameters]):
         """Create the publisher on the topic that ``<contact>`` names, or on the default topic of gz."""
         contact = self.sensor.sensor.contact
         declared_topic = "" if contact is None or contact.topic == _DEFAULT_TOPIC else contact.topic
-        usual = "" if declared_topic else "/contacts"
-        self.output = self.node.publisher(_CONTACTS_TYPE, declared_topic or self.gz_topic("contact"), usual=usual)
+        conventional_topic = "" if declared_topic else "/contacts"
+        self.output = self.node.publisher(
+            _CONTACTS_TYPE, declared_topic or self.gz_topic("contact"), conventional_topic=conventional_topic
+        )
 
     def measure(self) -> None:
         """Measure, and publish if there is a contact."""

@@ -10,7 +10,13 @@ from __future__ import annotations
 from typing import Any, Generic, TypeVar
 
 from linkwright.simulation.plugins.parameters import NoParameters
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin, vector_message
+from linkwright.simulation.plugins.sensors.base import (
+    SENSOR_QOS,
+    FrameNameParameter,
+    SensorPlugin,
+    SingleTopicSensor,
+    vector_message,
+)
 from linkwright.simulation.sensors.earth import AltimeterSensor, Barometer, Fix, MagnetometerSensor, NavsatSensor
 
 P = TypeVar("P")
@@ -40,13 +46,13 @@ class _Receiver(SensorPlugin[P], Generic[P]):
         return fix, message
 
 
-class ClassicGps(_Receiver[FrameName]):
+class ClassicGps(_Receiver[FrameNameParameter]):
     """The substitute for ``libgazebo_ros_gps_sensor.so``.
 
     The plugin publishes the geographic position, and the velocity in m/s towards east, north and up.
     """
 
-    PARAMETERS = FrameName
+    PARAMETERS = FrameNameParameter
 
     def create_publishers(self) -> None:
         """Create the publishers of the position and the velocity."""
@@ -66,7 +72,7 @@ class ClassicGps(_Receiver[FrameName]):
         self._velocities.publish(velocity)
 
 
-class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
+class GzNavsat(_Receiver[NoParameters], SingleTopicSensor[NoParameters]):
     """The sensors ``navsat`` and ``gps`` of gz."""
 
     def create_publishers(self) -> None:
@@ -78,7 +84,7 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
         self.output.publish(self.measure_fix(self.gz_frame())[1])
 
 
-class GzMagnetometer(OneTopic[NoParameters]):
+class GzMagnetometer(SingleTopicSensor[NoParameters]):
     """The sensor ``magnetometer`` of gz.
 
     The sensor publishes the magnetic field in tesla, as ros_gz_bridge does.
@@ -101,7 +107,7 @@ class GzMagnetometer(OneTopic[NoParameters]):
         self.output.publish(message)
 
 
-class GzAltimeter(OneTopic[NoParameters]):
+class GzAltimeter(SingleTopicSensor[NoParameters]):
     """The sensor ``altimeter`` of gz."""
 
     def create_sensor(self) -> None:
@@ -120,7 +126,7 @@ class GzAltimeter(OneTopic[NoParameters]):
         self.output.publish(message)
 
 
-class GzAirPressure(OneTopic[NoParameters]):
+class GzAirPressure(SingleTopicSensor[NoParameters]):
     """The sensor ``air_pressure`` of gz."""
 
     def create_sensor(self) -> None:

@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 from linkwright.geometry.single import compose, invert
 from linkwright.sdf.sensors import ForceTorque
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SingleTopicSensor
 from linkwright.simulation.plugins.sensors.contact import wrench_message
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 
@@ -21,7 +21,7 @@ _MESSAGE_TYPE = "geometry_msgs/msg/WrenchStamped"
 
 
 @dataclass(frozen=True, kw_only=True)
-class ForceTorqueParameters(FrameName):
+class ForceTorqueParameters(FrameNameParameter):
     """Parameters of ``gazebo_ros_ft_sensor``."""
 
     joint_name: str = parameter(aliases=("jointName",))
@@ -29,7 +29,7 @@ class ForceTorqueParameters(FrameName):
     update_rate: float = parameter(0.0, aliases=("updateRate",))
 
 
-class _ForceTorque(OneTopic[P], Generic[P]):
+class _ForceTorque(SingleTopicSensor[P], Generic[P]):
     """A force-torque sensor that publishes ``geometry_msgs/msg/WrenchStamped``."""
 
     _sensor: ForceTorqueSensor

@@ -15,7 +15,7 @@ from linkwright.messages import Header, Quaternion, Vector3, from_values, get_me
 from linkwright.sdf.noise import Noise, NoiseXyz
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SingleTopicSensor
 from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
 
@@ -28,7 +28,7 @@ def _message_class() -> Any:
     return get_message(_MESSAGE_TYPE)
 
 
-class _ImuPlugin(OneTopic[P], Generic[P]):
+class _ImuPlugin(SingleTopicSensor[P], Generic[P]):
     """An IMU that publishes ``sensor_msgs/msg/Imu``."""
 
     frame: str
@@ -52,7 +52,7 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ImuParameters(FrameName):
+class ImuParameters(FrameNameParameter):
     """Parameters of ``gazebo_ros_imu_sensor``."""
 
     initial_orientation_as_reference: bool = parameter(False, aliases=("initialOrientationAsReference",))
@@ -81,7 +81,7 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OldImuParameters(FrameName):
+class Ros1ImuParameters(FrameNameParameter):
     """Parameters of ``gazebo_ros_imu`` of ROS 1."""
 
     body_name: str = parameter(aliases=("bodyName",))
@@ -92,13 +92,13 @@ class OldImuParameters(FrameName):
     rpy_offset: single.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))
 
 
-class OldImu(_ImuPlugin[OldImuParameters]):
+class OldImu(_ImuPlugin[Ros1ImuParameters]):
     """The substitute for the model plugin ``libgazebo_ros_imu.so`` of ROS 1.
 
     A parameter names the link.
     """
 
-    PARAMETERS = OldImuParameters
+    PARAMETERS = Ros1ImuParameters
     IGNORED = ("serviceName",)
 
     @property

@@ -134,11 +134,14 @@ class GzSegmentation(_LabelingCamera):
     def create_publishers(self) -> None:
         """Create the publishers of the label map, the colored map and the camera info."""
         base = self.sensor.sensor.topic or self.gz_topic("segmentation")
-        usual = "" if self.sensor.sensor.topic else "/segmentation"
-        names = {leaf: f"{usual}/{leaf}" if usual else "" for leaf in ("labels_map", "colored_map", "camera_info")}
-        self._maps = self.node.publisher(IMAGE, f"{base}/labels_map", usual=names["labels_map"])
-        self._colored = self.node.publisher(IMAGE, f"{base}/colored_map", usual=names["colored_map"])
-        self._info = self.node.publisher(INFO, f"{base}/camera_info", usual=names["camera_info"])
+        conventional_topic = "" if self.sensor.sensor.topic else "/segmentation"
+        names = {
+            leaf: f"{conventional_topic}/{leaf}" if conventional_topic else ""
+            for leaf in ("labels_map", "colored_map", "camera_info")
+        }
+        self._maps = self.node.publisher(IMAGE, f"{base}/labels_map", conventional_topic=names["labels_map"])
+        self._colored = self.node.publisher(IMAGE, f"{base}/colored_map", conventional_topic=names["colored_map"])
+        self._info = self.node.publisher(INFO, f"{base}/camera_info", conventional_topic=names["camera_info"])
         self._colors = np.random.default_rng(0).integers(40, 256, (_LABEL_COUNT, 3), dtype=np.uint8)
         self._colors[0] = 0
 
@@ -179,9 +182,11 @@ class GzBoxes(_LabelingCamera):
     def create_publishers(self) -> None:
         """Create the publishers of the boxes, the image with boxes and the camera info."""
         topic = self.sensor.sensor.topic or self.gz_topic("boundingbox")
-        usual = "" if self.sensor.sensor.topic else "/boundingbox"
-        self._boxes = self.node.publisher(_DETECTIONS_TYPE, topic, usual=usual)
-        self._images = self.node.publisher(IMAGE, f"{topic}_image", usual=f"{usual}_image" if usual else "")
+        conventional_topic = "" if self.sensor.sensor.topic else "/boundingbox"
+        self._boxes = self.node.publisher(_DETECTIONS_TYPE, topic, conventional_topic=conventional_topic)
+        self._images = self.node.publisher(
+            IMAGE, f"{topic}_image", conventional_topic=f"{conventional_topic}_image" if conventional_topic else ""
+        )
         parent_topic, slash, _ = topic.rpartition("/")
         self._info = self.node.publisher(INFO, f"{parent_topic}{slash}camera_info")
 

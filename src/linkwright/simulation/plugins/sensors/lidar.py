@@ -20,7 +20,7 @@ from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
 from linkwright.sdf.sensors import Lidar
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SensorPlugin, SingleTopicSensor
 from linkwright.simulation.plugins.sensors.clouds import GZ, VELODYNE, fill_lidar_cloud
 from linkwright.simulation.sensors.lidar import LidarSensor, Scan
 
@@ -40,7 +40,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         self._rays = self.node.publisher(_SCAN_TYPE, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
         super().start()
 
-    def is_needed(self) -> bool:
+    def should_measure(self) -> bool:
         """Return whether the topics for measurements or rays have a subscription."""
         return self.is_wanted() or self._rays.is_wanted
 
@@ -129,12 +129,12 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
 
-class _OneLidar(_LidarPlugin[P], OneTopic[P], Generic[P]):
+class _OneLidar(_LidarPlugin[P], SingleTopicSensor[P], Generic[P]):
     """A lidar with one topic."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class RayParameters(FrameName):
+class RayParameters(FrameNameParameter):
     """Parameters of ``gazebo_ros_ray_sensor``."""
 
     output_type: str = "sensor_msgs/PointCloud2"
@@ -190,7 +190,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LaserParameters(FrameName):
+class LaserParameters(FrameNameParameter):
     """Parameters of the lasers of ROS 1."""
 
     topic_name: str = parameter("scan", aliases=("topicName",))
@@ -319,7 +319,7 @@ class GzLidar(_LidarPlugin[NoParameters]):
         self._scans = self.gz_output(_SCAN_TYPE, "scan")
         topic = self.sensor.sensor.topic or self.gz_topic("scan")
         self._clouds = self.node.publisher(
-            _CLOUD_TYPE, f"{topic}/points", usual="" if self.sensor.sensor.topic else "/scan/points"
+            _CLOUD_TYPE, f"{topic}/points", conventional_topic="" if self.sensor.sensor.topic else "/scan/points"
         )
 
     def is_wanted(self) -> bool:

@@ -12,12 +12,12 @@ from linkwright.messages import get_message
 from linkwright.sdf.sensors import LogicalCamera
 from linkwright.simulation.plugins.entities import pose_message
 from linkwright.simulation.plugins.parameters import NoParameters
-from linkwright.simulation.plugins.sensors.base import OneTopic
+from linkwright.simulation.plugins.sensors.base import SingleTopicSensor
 
 _IMAGE_TYPE, _MODEL_TYPE = "ros_gz_interfaces/msg/LogicalCameraImage", "ros_gz_interfaces/msg/LogicalCameraImageModel"
 
 
-class GzLogicalCamera(OneTopic[NoParameters]):
+class GzLogicalCamera(SingleTopicSensor[NoParameters]):
     """The sensor ``logical_camera`` of gz, which publishes names and poses of models."""
 
     def create_sensor(self) -> None:

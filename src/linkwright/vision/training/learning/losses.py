@@ -17,6 +17,7 @@ _CELLS_PER_OBJECT = 10
 _MIN_HALF_SIZE = 8.0  # for small objects: cells within this many pixels of the center may be assigned
 _BOX_WEIGHT, _SCORE_WEIGHT = 4.0, 1.0
 _EPSILON = 1e-7
+"""Avoids divisions by zero."""
 
 
 @dataclass(frozen=True, slots=True)

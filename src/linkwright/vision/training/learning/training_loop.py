@@ -30,7 +30,7 @@ from linkwright.vision.training.learning.optimizer import Optimizer
 from linkwright.vision.training.options import Options
 
 _WARM_UP_STEPS = 100  # the number of steps over which the learning rate grows to its maximum
-_FINAL_RATE_SHARE = 0.02  # the final learning rate, as a share of the maximum
+_FINAL_RATE_FRACTION = 0.02  # the final learning rate, as a fraction of the maximum
 _MAX_GRADIENT_NORM = 10.0  # the norm that gradients are clipped to
 _STATISTICS_IMAGES = 128  # the number of images used to measure layer statistics for weights from a file
 _AVERAGE_DECAY = 0.998  # the decay of the moving average per step, after its warm-up
@@ -177,7 +177,7 @@ class TrainingLoop:
         """Return the learning rate: a short warm-up, then half a cosine down to nearly zero."""
         total_steps = self.options.epochs * steps
         progress = min(1.0, self._step / max(1, total_steps))
-        decay = _FINAL_RATE_SHARE + (1 - _FINAL_RATE_SHARE) * (1 + math.cos(math.pi * progress)) / 2
+        decay = _FINAL_RATE_FRACTION + (1 - _FINAL_RATE_FRACTION) * (1 + math.cos(math.pi * progress)) / 2
         return self.options.rate * decay * min(1.0, (self._step + 1) / min(_WARM_UP_STEPS, max(1, total_steps // 4)))
 
     @torch.no_grad()

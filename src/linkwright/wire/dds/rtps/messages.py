@@ -39,7 +39,7 @@ class Data:
         source: the GUID prefix of the sender's participant.
         reader: the entity that the sample is for; `UNKNOWN` for all matching readers.
         writer: the GUID of the writer.
-        number: the sequence number.
+        sequence_number: the sequence number.
         order: the byte order of `inline`, ``<`` or ``>``.
         inline: the inline QoS.
         payload: the serialized payload; None if there is only a key.
@@ -52,7 +52,7 @@ class Data:
     source: bytes
     reader: bytes
     writer: bytes
-    number: int
+    sequence_number: int
     order: str
     inline: Parameters
     payload: bytes | None
@@ -111,7 +111,7 @@ class NackFrag:
     source: bytes
     reader: bytes
     writer: bytes
-    number: int
+    sequence_number: int
     missing: Collection[int]
 
 
@@ -165,18 +165,27 @@ def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> 
     elif kind in (_DATA, _DATA_FRAG):
         return _read_data(kind, flags, order, body, context)
     elif kind == _HEARTBEAT:
-        first, last = _number(body, 8, order), _number(body, 16, order)
+        first, last = _read_sequence_number(body, 8, order), _read_sequence_number(body, 16, order)
         return Heartbeat(context.source, body[:4], context.source + body[4:8], first, last, bool(flags & _FINAL))
     elif kind == _GAP:
         base, other_numbers = _number_set(body, 16, order)
-        return Gap(context.source, body[:4], context.source + body[4:8], _number(body, 8, order), base, other_numbers)
+        return Gap(
+            context.source,
+            body[:4],
+            context.source + body[4:8],
+            _read_sequence_number(body, 8, order),
+            base,
+            other_numbers,
+        )
     elif kind == _ACKNACK:
         base, missing = _number_set(body, 8, order)
         return AckNack(context.source, context.source + body[:4], body[4:8], base, missing, bool(flags & _FINAL))
     elif kind == _NACK_FRAG:
         base, count = struct.unpack_from(order + "II", body, 16)
         missing = _bits(body, 24, base, count, order)
-        return NackFrag(context.source, context.source + body[:4], body[4:8], _number(body, 8, order), missing)
+        return NackFrag(
+            context.source, context.source + body[:4], body[4:8], _read_sequence_number(body, 8, order), missing
+        )
     return None
 
 
@@ -194,8 +203,10 @@ def _read_data(kind: int, flags: int, order: str, body: bytes, context: _Context
     if flags & _INLINE:
         inline, offset = read_parameters(body, offset, order)
     payload = body[offset:] if has_data else None
-    writer, number = context.source + body[8:12], _number(body, 12, order)
-    return Data(context.source, body[4:8], writer, number, order, inline, payload, context.time, first, fragment, size)
+    writer, sequence_number = context.source + body[8:12], _read_sequence_number(body, 12, order)
+    return Data(
+        context.source, body[4:8], writer, sequence_number, order, inline, payload, context.time, first, fragment, size
+    )
 
 
 def _time(body: bytes, order: str) -> int:
@@ -203,13 +214,13 @@ def _time(body: bytes, order: str) -> int:
     return int(seconds) * NANOSECONDS_PER_SECOND + (int(fraction) * NANOSECONDS_PER_SECOND >> 32)
 
 
-def _number(body: bytes, offset: int, order: str) -> int:
+def _read_sequence_number(body: bytes, offset: int, order: str) -> int:
     high, low = struct.unpack_from(order + "iI", body, offset)
     return (int(high) << 32) + int(low)
 
 
 def _number_set(body: bytes, offset: int, order: str) -> tuple[int, list[int]]:
-    base = _number(body, offset, order)
+    base = _read_sequence_number(body, offset, order)
     (count,) = struct.unpack_from(order + "I", body, offset + 8)
     return base, _bits(body, offset + 12, base, count, order)
 
@@ -236,10 +247,10 @@ def info_timestamp(nanoseconds: int) -> bytes:
     return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (remainder << 32) // NANOSECONDS_PER_SECOND))
 
 
-def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
+def data(reader: bytes, writer: bytes, sequence_number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
     """Return a DATA submessage. Without a payload, it contains only the key in `inline`."""
     flags = (_INLINE if inline else 0) | (0 if payload is None else _HAS_DATA)
-    head = struct.pack("<HH", 0, 16) + reader + writer + _pack(number)
+    head = struct.pack("<HH", 0, 16) + reader + writer + _pack_sequence_number(sequence_number)
     return _submessage(_DATA, flags, head + inline + (payload or b""))
 
 
@@ -249,34 +260,36 @@ def fragment_count(payload: bytes) -> int:
 
 
 def data_fragment(
-    reader: bytes, writer: bytes, number: int, payload: bytes, fragment_number: int, inline: bytes = b""
+    reader: bytes, writer: bytes, sequence_number: int, payload: bytes, fragment_number: int, inline: bytes = b""
 ) -> bytes:
     """Return a DATA_FRAG submessage with one fragment of a payload.
 
     Fragments are counted from 1.
     """
-    head = _fragment_head(reader, writer, number, len(payload), fragment_number)
+    head = _fragment_head(reader, writer, sequence_number, len(payload), fragment_number)
     fragment = payload[(fragment_number - 1) * FRAGMENT : fragment_number * FRAGMENT]
     return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + fragment)
 
 
-def fragment_start(reader: bytes, writer: bytes, number: int, size: int, fragment_number: int, length: int) -> bytes:
+def fragment_start(
+    reader: bytes, writer: bytes, sequence_number: int, size: int, fragment_number: int, length: int
+) -> bytes:
     """Return the beginning of a DATA_FRAG submessage. The caller appends the bytes of the fragment.
 
     Args:
         reader: the entity that the fragment is for.
         writer: the entity that wrote the payload.
-        number: the sequence number.
+        sequence_number: the sequence number.
         size: the size of the payload in bytes.
         fragment_number: the number of the fragment, counted from 1.
         length: the length of the fragment in bytes, a multiple of four.
     """
-    head = _fragment_head(reader, writer, number, size, fragment_number)
+    head = _fragment_head(reader, writer, sequence_number, size, fragment_number)
     return struct.pack("<BBH", _DATA_FRAG, _LITTLE, len(head) + length) + head
 
 
-def _fragment_head(reader: bytes, writer: bytes, number: int, size: int, fragment_number: int) -> bytes:
-    head = struct.pack("<HH", 0, 28) + reader + writer + _pack(number)
+def _fragment_head(reader: bytes, writer: bytes, sequence_number: int, size: int, fragment_number: int) -> bytes:
+    head = struct.pack("<HH", 0, 28) + reader + writer + _pack_sequence_number(sequence_number)
     return head + struct.pack("<IHHI", fragment_number, 1, FRAGMENT, size)
 
 
@@ -291,13 +304,15 @@ def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *
         count: the number of this heartbeat, which increases.
         final: whether the reader need not respond.
     """
-    body = reader + writer + _pack(first) + _pack(last) + struct.pack("<I", count)
+    body = reader + writer + _pack_sequence_number(first) + _pack_sequence_number(last) + struct.pack("<I", count)
     return _submessage(_HEARTBEAT, _FINAL if final else 0, body)
 
 
 def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
     """Return a GAP submessage: the samples from `start` up to but not including `base` do not exist."""
-    return _submessage(_GAP, 0, reader + writer + _pack(start) + _pack(base) + struct.pack("<I", 0))
+    return _submessage(
+        _GAP, 0, reader + writer + _pack_sequence_number(start) + _pack_sequence_number(base) + struct.pack("<I", 0)
+    )
 
 
 def acknack(
@@ -309,14 +324,14 @@ def acknack(
     """
     size = max(missing) - base + 1 if missing else 0
     words = [0] * ((size + 31) // 32)
-    for number in missing:
-        words[(number - base) // 32] |= 1 << (31 - (number - base) % 32)
-    body = reader + writer + _pack(base) + struct.pack(f"<I{len(words)}II", size, *words, count)
+    for sequence_number in missing:
+        words[(sequence_number - base) // 32] |= 1 << (31 - (sequence_number - base) % 32)
+    body = reader + writer + _pack_sequence_number(base) + struct.pack(f"<I{len(words)}II", size, *words, count)
     return _submessage(_ACKNACK, _FINAL if final else 0, body)
 
 
-def _pack(number: int) -> bytes:
-    return struct.pack("<iI", number >> 32, number & 0xFFFF_FFFF)
+def _pack_sequence_number(sequence_number: int) -> bytes:
+    return struct.pack("<iI", sequence_number >> 32, sequence_number & 0xFFFF_FFFF)
 
 
 def _submessage(kind: int, flags: int, body: bytes) -> bytes:

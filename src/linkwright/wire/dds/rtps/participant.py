@@ -187,10 +187,10 @@ class RtpsParticipant:
         """
         with self._lock:
             packets = local.writer.write(payload, inline=inline, to=to)
-            number = local.writer.last
+            sequence_number = local.writer.last
         self._network.send(packets)
         self._wake()
-        return number
+        return sequence_number
 
     def matched_readers(self, local: LocalWriter) -> list[bytes]:
         """Return the GUIDs of the remote readers that match one of our writers."""

@@ -42,12 +42,12 @@ class _Incomplete:
         """
         count = (self.size + self.fragment - 1) // self.fragment
         for start in range(0, len(payload), self.fragment):
-            number = first + start // self.fragment
-            if number <= count:
-                self.parts.setdefault(number, payload[start : start + self.fragment])
-        if len(self.parts) < count or any(number not in self.parts for number in range(1, count + 1)):
+            fragment_number = first + start // self.fragment
+            if fragment_number <= count:
+                self.parts.setdefault(fragment_number, payload[start : start + self.fragment])
+        if len(self.parts) < count or any(fragment_number not in self.parts for fragment_number in range(1, count + 1)):
             return None
-        return b"".join(self.parts[number] for number in range(1, count + 1))[: self.size]
+        return b"".join(self.parts[fragment_number] for fragment_number in range(1, count + 1))[: self.size]
 
 
 @dataclass(slots=True)
@@ -63,22 +63,22 @@ class _Writer:
     due_at: float = 0.0
     repeat: float = _FIRST_REPEAT
 
-    def has(self, number: int) -> bool:
-        return number < self.low or number in self.later
+    def has(self, sequence_number: int) -> bool:
+        return sequence_number < self.low or sequence_number in self.later
 
-    def add(self, number: int) -> None:
-        self.later.add(number)
-        self.incomplete.pop(number, None)
+    def add(self, sequence_number: int) -> None:
+        self.later.add(sequence_number)
+        self.incomplete.pop(sequence_number, None)
         self._advance_low()
 
-    def start_at(self, number: int) -> None:
-        if number > self.low:
-            self.low = number
-            self.later = {value for value in self.later if value >= number}
+    def start_at(self, sequence_number: int) -> None:
+        if sequence_number > self.low:
+            self.low = sequence_number
+            self.later = {value for value in self.later if value >= sequence_number}
             self.incomplete = {
                 incomplete_number: incomplete_sample
                 for incomplete_number, incomplete_sample in self.incomplete.items()
-                if incomplete_number >= number
+                if incomplete_number >= sequence_number
             }
         self._advance_low()
 
@@ -89,7 +89,7 @@ class _Writer:
 
     def missing(self) -> list[int]:
         end = min(self.last + 1, self.low + _MAX_MISSING)
-        return [number for number in range(self.low, end) if number not in self.later]
+        return [sequence_number for sequence_number in range(self.low, end) if sequence_number not in self.later]
 
 
 class Reader:
@@ -141,8 +141,8 @@ class Reader:
         writer_state = self._writers.get(sample.writer)
         if (
             writer_state is None
-            or writer_state.has(sample.number)
-            or sample.number > max(writer_state.low, writer_state.last) + _MAX_AHEAD
+            or writer_state.has(sample.sequence_number)
+            or sample.sequence_number > max(writer_state.low, writer_state.last) + _MAX_AHEAD
         ):
             return None
         complete: Data | None = sample
@@ -150,8 +150,8 @@ class Reader:
             payload = self._complete(writer_state, sample)
             complete = None if payload is None else replace(sample, payload=payload, first=0)
         if complete is not None:
-            writer_state.add(sample.number)
-            writer_state.last = max(writer_state.last, sample.number)
+            writer_state.add(sample.sequence_number)
+            writer_state.last = max(writer_state.last, sample.sequence_number)
         return complete
 
     def on_heartbeat(self, heartbeat: Heartbeat) -> list[Packet]:
@@ -178,11 +178,11 @@ class Reader:
         if gap.start <= writer_state.low:
             writer_state.start_at(gap.base)
         else:
-            for number in range(gap.start, min(gap.base, gap.start + _MAX_AHEAD)):
-                writer_state.add(number)
-        for number in gap.others:
-            if not writer_state.has(number):
-                writer_state.add(number)
+            for sequence_number in range(gap.start, min(gap.base, gap.start + _MAX_AHEAD)):
+                writer_state.add(sequence_number)
+        for sequence_number in gap.others:
+            if not writer_state.has(sequence_number):
+                writer_state.add(sequence_number)
 
     def remind(self, now: float) -> list[Packet]:
         """Return the packets that repeat a request to silent writers, if a request is due."""
@@ -203,14 +203,16 @@ class Reader:
     def _complete(writer_state: _Writer, sample: Data) -> bytes | None:
         if sample.payload is None or sample.size > _MAX_SAMPLE_SIZE:
             return None
-        incomplete_sample = writer_state.incomplete.get(sample.number)
+        incomplete_sample = writer_state.incomplete.get(sample.sequence_number)
         if incomplete_sample is None or (incomplete_sample.size, incomplete_sample.fragment) != (
             sample.size,
             sample.fragment,
         ):
             while len(writer_state.incomplete) >= _MAX_INCOMPLETE:
                 writer_state.incomplete.pop(min(writer_state.incomplete))
-            incomplete_sample = writer_state.incomplete[sample.number] = _Incomplete(sample.size, sample.fragment)
+            incomplete_sample = writer_state.incomplete[sample.sequence_number] = _Incomplete(
+                sample.size, sample.fragment
+            )
         return incomplete_sample.add(sample.first, sample.payload)
 
     def _request_heartbeat(self, writer: bytes, writer_state: _Writer, now: float) -> Packet:

@@ -146,13 +146,13 @@ def read_locators(values: list[bytes], order: str) -> list[Address]:
     return addresses
 
 
-def related_identity(guid: bytes, number: int) -> bytes:
+def related_identity(guid: bytes, sequence_number: int) -> bytes:
     """Return inline QoS that identifies the related sample by a GUID and a sequence number.
 
     The GUID belongs to the related sample's writer or reader. The inline QoS has the forms that all versions of Fast
     DDS understand.
     """
-    value = guid + _IDENTITY.pack(number >> 32, number & 0xFFFF_FFFF)
+    value = guid + _IDENTITY.pack(sequence_number >> 32, sequence_number & 0xFFFF_FFFF)
     return parameters((PID_RELATED_SAMPLE_IDENTITY, value), (PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS, value))
 
 

@@ -71,7 +71,7 @@ class Writer:
         self._keeps_history = keeps_history
         self._changes: dict[int, _Change] = {}
         self._byte_count = 0
-        self._last_number = 0
+        self._last_sequence_number = 0
         self._count = 0
         self._readers: dict[bytes, _Reader] = {}
 
@@ -96,7 +96,9 @@ class Writer:
         if reader in self._readers:
             self._readers[reader].addresses = addresses
             return []
-        reader_state = self._readers[reader] = _Reader(addresses, 1 if self._keeps_history else self._last_number + 1)
+        reader_state = self._readers[reader] = _Reader(
+            addresses, 1 if self._keeps_history else self._last_sequence_number + 1
+        )
         if not self._keeps_history:
             return [self._packet(reader, reader_state, self._heartbeat(reader, reader_state))]
         return self._history_packets(reader, reader_state)
@@ -120,26 +122,26 @@ class Writer:
         Returns:
             The packets to send.
         """
-        self._last_number += 1
-        number = self._last_number
-        self._changes[number] = _Change(payload, inline, to, time.time_ns())
+        self._last_sequence_number += 1
+        sequence_number = self._last_sequence_number
+        self._changes[sequence_number] = _Change(payload, inline, to, time.time_ns())
         self._byte_count += len(payload or b"")
         while len(self._changes) > 1 and (len(self._changes) > _MAX_SAMPLES or self._byte_count > _MAX_BYTES):
             self._drop(min(self._changes))
         packets: list[Packet] = []
         for reader, reader_state in self._readers.items():
             reader_state.due_at, reader_state.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
-            packets += self._sample(reader, reader_state, number)
+            packets += self._sample(reader, reader_state, sequence_number)
         return packets
 
-    def withdraw(self, number: int) -> None:
+    def withdraw(self, sequence_number: int) -> None:
         """Remove a sample from the history for late-joining readers."""
-        self._drop(number)
+        self._drop(sequence_number)
 
     @property
     def last(self) -> int:
         """The sequence number of the newest sample."""
-        return self._last_number
+        return self._last_sequence_number
 
     def on_acknack(self, acknack: AckNack) -> list[Packet]:
         """Handle an ACKNACK, and return the packets that resend the missing samples."""
@@ -148,12 +150,14 @@ class Writer:
             return []
         reader_state.heard = True
         if acknack.base > reader_state.base:
-            reader_state.base = min(acknack.base, self._last_number + 1)
+            reader_state.base = min(acknack.base, self._last_sequence_number + 1)
             reader_state.repeat = _FIRST_REPEAT
             reader_state.due_at = time.monotonic() + reader_state.repeat
             self._forget_acknowledged()
         packets = [
-            packet for number in acknack.missing for packet in self._repeat_sample(acknack.reader, reader_state, number)
+            packet
+            for sequence_number in acknack.missing
+            for packet in self._repeat_sample(acknack.reader, reader_state, sequence_number)
         ]
         if packets or (not acknack.final and not acknack.missing):
             packets.append(self._packet(acknack.reader, reader_state, self._heartbeat(acknack.reader, reader_state)))
@@ -161,13 +165,13 @@ class Writer:
 
     def on_nack_frag(self, nack: NackFrag) -> list[Packet]:
         """Handle a NACK_FRAG, and return the packets that resend the missing fragments."""
-        reader_state, change = self._readers.get(nack.reader), self._changes.get(nack.number)
+        reader_state, change = self._readers.get(nack.reader), self._changes.get(nack.sequence_number)
         if reader_state is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []
         fragment_total = fragment_count(change.payload)
         fragments = [fragment for fragment in nack.missing if 1 <= fragment <= fragment_total]
         packets = [
-            self._fragment(nack.reader, reader_state, nack.number, change, change.payload, fragment)
+            self._fragment(nack.reader, reader_state, nack.sequence_number, change, change.payload, fragment)
             for fragment in fragments
         ]
         return [*packets, self._packet(nack.reader, reader_state, self._heartbeat(nack.reader, reader_state))]
@@ -176,7 +180,7 @@ class Writer:
         """Return heartbeats for the readers that have not acknowledged all samples, if they are due."""
         packets = []
         for reader, reader_state in self._readers.items():
-            if reader_state.base <= self._last_number and now >= reader_state.due_at:
+            if reader_state.base <= self._last_sequence_number and now >= reader_state.due_at:
                 reader_state.due_at = now + reader_state.repeat
                 reader_state.repeat = min(reader_state.repeat * 2, _LAST_REPEAT)
                 packets.append(self._packet(reader, reader_state, self._heartbeat(reader, reader_state)))
@@ -188,7 +192,11 @@ class Writer:
         Returns None if everything has been acknowledged.
         """
         return min(
-            (reader_state.due_at for reader_state in self._readers.values() if reader_state.base <= self._last_number),
+            (
+                reader_state.due_at
+                for reader_state in self._readers.values()
+                if reader_state.base <= self._last_sequence_number
+            ),
             default=None,
         )
 
@@ -196,56 +204,75 @@ class Writer:
 
     def _history_packets(self, reader: bytes, reader_state: _Reader) -> list[Packet]:
         reader_state.due_at = time.monotonic() + _FIRST_REPEAT
-        packets = [packet for number in sorted(self._changes) for packet in self._sample(reader, reader_state, number)]
+        packets = [
+            packet
+            for sequence_number in sorted(self._changes)
+            for packet in self._sample(reader, reader_state, sequence_number)
+        ]
         return packets or [self._packet(reader, reader_state, self._heartbeat(reader, reader_state))]
 
-    def _sample(self, reader: bytes, reader_state: _Reader, number: int) -> Iterator[Packet]:
-        change = self._changes[number]
+    def _sample(self, reader: bytes, reader_state: _Reader, sequence_number: int) -> Iterator[Packet]:
+        change = self._changes[sequence_number]
         heartbeat_submessage = self._heartbeat(reader, reader_state)
         entity = reader[PREFIX:]
         if not change.is_for(reader):
             yield self._packet(
-                reader, reader_state, gap(entity, self.guid[PREFIX:], number, number + 1), heartbeat_submessage
+                reader,
+                reader_state,
+                gap(entity, self.guid[PREFIX:], sequence_number, sequence_number + 1),
+                heartbeat_submessage,
             )
         elif change.payload is not None and len(change.payload) > FRAGMENT:
             for fragment_number in range(1, fragment_count(change.payload) + 1):
-                yield self._fragment(reader, reader_state, number, change, change.payload, fragment_number)
+                yield self._fragment(reader, reader_state, sequence_number, change, change.payload, fragment_number)
             yield self._packet(reader, reader_state, heartbeat_submessage)
         else:
-            sample = data(entity, self.guid[PREFIX:], number, change.payload, change.inline)
+            sample = data(entity, self.guid[PREFIX:], sequence_number, change.payload, change.inline)
             yield self._packet(reader, reader_state, info_timestamp(change.time), sample, heartbeat_submessage)
 
-    def _repeat_sample(self, reader: bytes, reader_state: _Reader, number: int) -> Iterator[Packet]:
-        if number in self._changes:
-            yield from self._sample(reader, reader_state, number)
-        elif number <= self._last_number:
-            yield self._packet(reader, reader_state, gap(reader[PREFIX:], self.guid[PREFIX:], number, number + 1))
+    def _repeat_sample(self, reader: bytes, reader_state: _Reader, sequence_number: int) -> Iterator[Packet]:
+        if sequence_number in self._changes:
+            yield from self._sample(reader, reader_state, sequence_number)
+        elif sequence_number <= self._last_sequence_number:
+            yield self._packet(
+                reader, reader_state, gap(reader[PREFIX:], self.guid[PREFIX:], sequence_number, sequence_number + 1)
+            )
 
     def _fragment(
-        self, reader: bytes, reader_state: _Reader, number: int, change: _Change, payload: bytes, fragment_number: int
+        self,
+        reader: bytes,
+        reader_state: _Reader,
+        sequence_number: int,
+        change: _Change,
+        payload: bytes,
+        fragment_number: int,
     ) -> Packet:
-        submessage = data_fragment(reader[PREFIX:], self.guid[PREFIX:], number, payload, fragment_number, change.inline)
+        submessage = data_fragment(
+            reader[PREFIX:], self.guid[PREFIX:], sequence_number, payload, fragment_number, change.inline
+        )
         return self._packet(reader, reader_state, info_timestamp(change.time), submessage)
 
     def _heartbeat(self, reader: bytes, reader_state: _Reader) -> bytes:
         self._count += 1
         first_number = (
-            min(self._changes, default=self._last_number + 1)
+            min(self._changes, default=self._last_sequence_number + 1)
             if self._keeps_history
-            else min(reader_state.base, self._last_number + 1)
+            else min(reader_state.base, self._last_sequence_number + 1)
         )
-        return heartbeat(reader[PREFIX:], self.guid[PREFIX:], first_number, self._last_number, self._count)
+        return heartbeat(reader[PREFIX:], self.guid[PREFIX:], first_number, self._last_sequence_number, self._count)
 
     def _packet(self, reader: bytes, reader_state: _Reader, *submessages: bytes) -> Packet:
         return message(self.guid[:PREFIX], *submessages, to=reader[:PREFIX]), reader_state.addresses
 
     def _forget_acknowledged(self) -> None:
-        base = min((reader_state.base for reader_state in self._readers.values()), default=self._last_number + 1)
-        for number in [change for change in self._changes if change < base]:
-            if not self._keeps_history or self._changes[number].payload is None:
-                self._drop(number)
+        base = min(
+            (reader_state.base for reader_state in self._readers.values()), default=self._last_sequence_number + 1
+        )
+        for sequence_number in [change for change in self._changes if change < base]:
+            if not self._keeps_history or self._changes[sequence_number].payload is None:
+                self._drop(sequence_number)
 
-    def _drop(self, number: int) -> None:
-        change = self._changes.pop(number, None)
+    def _drop(self, sequence_number: int) -> None:
+        change = self._changes.pop(sequence_number, None)
         if change is not None:
             self._byte_count -= len(change.payload or b"")
