@@ -43,3 +43,10 @@ def test_files_that_include_each_other_are_read_once(repository, compare):
     repository.commit({"a/package.xml": PACKAGE_XML, PATH: "plugins: []\n", "a/config/b.yaml": "- include: b.yaml\n"})
     repository.write({PATH: "plugins:\n- include: b.yaml\n"})
     assert "included files added: 'b.yaml'" in sentences(subject(compare(repository), PATH))
+
+
+def test_files_that_include_each_other_many_times_are_read_up_to_a_limit(repository, compare):
+    items = "- include: b.yaml\n" * 500
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: "plugins: []\n", "a/config/b.yaml": items})
+    repository.write({PATH: f"plugins:\n{items}"})
+    assert "included files added: 'b.yaml'" in sentences(subject(compare(repository), PATH))

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 
 import yaml
 
 from linkwright.diagnostics import phrase, quoted_names
 from linkwright.review.changes import Location
-from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.yaml_values import composed
+from linkwright.review.file_pair import FilePair, LimitError, UnreadableFileError
+from linkwright.review.files.yaml_values import composed, yaml_values
 
 _KEYS = ("include", "$include")
 _TAG = "!include"
 _MAX_DEPTH = 5
+_MAX_INCLUDES = 200
+"""The number of includes of a file, nested ones among them, that are read."""
 _MAX_BYTES = 1 << 20
 
 
 def with_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.Node, yaml.Node]:
     """Return two documents with the contents of the files that only one of them includes, and name these files.
 
-    A value that moves into an included file has then not changed.
+    A value that moves into an included file has then not changed. Documents with too many values stay as they are.
     """
     readers = _Includes(pair.old_file, pair.versions.old.root), _Includes(pair.new_file, pair.versions.new.root)
     marks = [dict(reader.names(root)) for reader, root in zip(readers, (old, new), strict=True)]
@@ -35,7 +38,13 @@ def with_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.
         line, column = marks[0][removed[0]]
         text = phrase("included files removed: {names}", names=quoted_names(removed))
         pair.add(text, Location(pair.old_path, line, column, is_old=True))
-    return readers[0].expanded(old, removed), readers[1].expanded(new, added)
+    expanded = readers[0].expanded(old, removed), readers[1].expanded(new, added)
+    try:
+        for root in expanded if added or removed else ():
+            yaml_values(root, {})
+    except LimitError:
+        return old, new
+    return expanded
 
 
 @dataclass(frozen=True)
@@ -45,10 +54,12 @@ class _Includes:
     Attributes:
         file: the file.
         root: the root of the version.
+        counter: counts the includes that were read.
     """
 
     file: Path
     root: Path
+    counter: Iterator[int] = field(default_factory=count)
 
     def names(self, node: yaml.Node) -> Iterator[tuple[str, tuple[int, int]]]:
         """Yield the names of the included files that exist, with the line and the column of each."""
@@ -110,15 +121,20 @@ class _Includes:
         return name if is_inside and file.stat().st_size <= _MAX_BYTES else None
 
     def _content(self, name: str, place: yaml.Node, depth: int) -> yaml.Node | None:
-        """Return the content of an included file at the place of its include, or None if it cannot be read."""
+        """Return the content of an included file at the place of its include.
+
+        Returns None if the file cannot be read, or if too many were read.
+        """
         file = self.file.parent / name
+        if next(self.counter) >= _MAX_INCLUDES:
+            return None
         try:
             root = composed(file.read_text(encoding="utf-8"))
         except (UnreadableFileError, OSError, ValueError):
             return None
         if root is None:
             return None
-        inner = _Includes(file, self.root)
+        inner = _Includes(file, self.root, self.counter)
         root = inner.expanded(root, [inside for inside, _ in inner.names(root)], depth + 1)
         _place(root, place)
         return root
