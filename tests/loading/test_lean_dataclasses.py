@@ -133,7 +133,7 @@ def test_dataclass_can_derive_from_lean_dataclass():
 
 
 class Leaned(lean_dataclasses.NamedTuple):
-    """A named tuple of `linkwright.loading.lean_dataclasses`."""
+    """A named tuple."""
 
     x: int
     others: tuple[int, ...] = ()
@@ -144,7 +144,7 @@ class Leaned(lean_dataclasses.NamedTuple):
 
 
 class Usual(NamedTuple):
-    """The same named tuple of `typing`."""
+    """A named tuple."""
 
     x: int
     others: tuple[int, ...] = ()
