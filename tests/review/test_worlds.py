@@ -98,6 +98,27 @@ def test_equal_changes_of_several_elements_are_one(repository, compare):
     ]
 
 
+def test_removed_elements_with_different_values_are_apart(repository, compare):
+    def model(shapes: dict[str, str]) -> str:
+        links = "".join(
+            f'<link name="{name}"><collision name="c"><geometry>{shape}</geometry></collision></link>'
+            for name, shape in shapes.items()
+        )
+        return f'<sdf version="1.9"><model name="arm">{links}</model></sdf>'
+
+    def mesh(name: str) -> str:
+        return f"<mesh><uri>model://arm/{name}.dae</uri></mesh>"
+
+    box = "<box><size>1 1 1</size></box>"
+    repository.commit({PATH: model({"frame_0": mesh("frame"), "frame_1": mesh("frame"), "plate": mesh("plate")})})
+    repository.write({PATH: model(dict.fromkeys(("frame_0", "frame_1", "plate"), box))})
+    found = sentences(subject(compare(repository), PATH))
+    assert [sentence for sentence in found if "removed" in sentence] == [
+        "model arm link frame_0, frame_1 collision c geometry mesh removed: uri model://arm/frame.dae",
+        "model arm link plate collision c geometry mesh removed: uri model://arm/plate.dae",
+    ]
+
+
 def test_added_element_is_shown_with_its_attributes(repository, compare):
     repository.commit({PATH: WORLD})
     plugin = '<plugin name="Entity context menu" filename="Menu"/>'

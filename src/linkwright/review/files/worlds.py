@@ -121,7 +121,7 @@ class _WorldChange:
         """A key that is equal for equal changes of several elements."""
         difference = self.difference
         content = "" if difference.element is None else own_content(difference.element)
-        if difference.element is not None and is_added(difference):
+        if difference.element is not None and (is_added(difference) or is_removed(difference)):
             content = all_content(difference.element)
         values = str(difference.values_text()) if isinstance(difference, InertialDifference) else ""
         reason = None if self.reason is None else str(self.reason)

@@ -38,10 +38,8 @@ def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
 
 def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
     if new.kind is NameKind.FUNCTION:
-        old_text, new_text = (" | ".join(f"({each})" for each in item.type.split("; ")) for item in (old, new))
-        text = phrase("function '{name}': {old} -> {new}", name=new.name, old=old_text, new=new_text)
         reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
-        yield text, None if _accepts_all(old.type, new.type) else reason
+        yield _function_text(new.name, old.type, new.type), None if _accepts_all(old.type, new.type) else reason
     elif new.kind in (NameKind.PARAMETER, NameKind.OPTION):
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
@@ -58,6 +56,20 @@ def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Ph
         )
         reason = phrase("programs that use '{name}' with the old type get nothing", name=new.name)
         yield text, reason
+
+
+def _function_text(name: str, old: str, new: str) -> Phrase:
+    """Return the change of the parameters of a function, with the overloads of one version only."""
+    overloads = old.split("; "), new.split("; ")
+    removed, added = (
+        " | ".join(f"({overload})" for overload in own if overload not in other)
+        for own, other in (overloads, overloads[::-1])
+    )
+    if not removed:
+        return phrase("function '{name}': overloads {overloads} added", name=name, overloads=added)
+    if not added:
+        return phrase("function '{name}': overloads {overloads} removed", name=name, overloads=removed)
+    return phrase("function '{name}': {old} -> {new}", name=name, old=removed, new=added)
 
 
 def _accepts_all(old: str, new: str) -> bool:
