@@ -126,3 +126,16 @@ def test_equal_mesh_under_another_path_has_no_images(repository, height, count):
     files = {**FILES, "w/meshes/other.stl": stl(height)}
     result = reviewed(repository, ("base.stl", "other.stl"), files=files, with_images=True)
     assert len(subject(result, PATH).images) == count
+
+
+def test_added_elements_of_an_unreadable_robot_have_their_values(repository, compare):
+    text = '<robot name="arm"><link name="a"/><link name="b"/>{}</robot>'
+    joints = "".join(
+        f'<joint name="j{number}" type="fixed"><parent link="a"/><child link="{child}"/></joint>'
+        for number, child in enumerate("cd")
+    )
+    repository.commit({**PACKAGE, PATH: text.format("")})
+    repository.write({PATH: text.format(joints)})
+    (change,) = subject(compare(repository), PATH).changes
+    assert str(change.sentence) == "joint j0 type=fixed added: parent link=a, child link=c"
+    assert change.other_names == ("joint j1: parent link=a, child link=d",)

@@ -31,6 +31,8 @@ _SHOWN_BEGINNING = 20
 """The number of equal characters that are shown before the difference of long values."""
 _MAX_VALUES = 8
 """The number of values of an added or removed element that a line shows."""
+_MAX_WITH_CONTENTS = 8
+"""The number of added or removed elements up to which one line shows the values of each."""
 _MAX_LINES = 15
 """The number of changes without a reason that are listed for a file."""
 _NAMESPACE = "namespace"
@@ -211,10 +213,11 @@ class _Described:
     def name_beside(self, first: _Described) -> str | None:
         """Return the name beside that of the first element with the same change, or None if it tells nothing more.
 
-        Elements without names of their own have their attributes.
+        Elements with other values have these, and elements without names of their own have their attributes.
         """
         if self.element != first.element:
-            return self.name
+            has_other_contents = self.shows_contents and str(self.contents) != str(first.contents)
+            return f"{self.name}: {self.contents}" if has_other_contents and self.contents is not None else self.name
         difference = self.difference
         value, first_value = (each.new or each.old or "" for each in (difference, first.difference))
         return f"{self.element} {_cut(value)}" if difference.is_whole and value != first_value else None
@@ -295,7 +298,8 @@ def _merged(differences: list[_Described]) -> Iterator[Change]:
     changes = []
     for first, *others in groups.values():
         if len({str(each.contents) for each in (first, *others)}) > 1:
-            first = replace(first, shows_contents=False)
+            shows_contents = len(others) < _MAX_WITH_CONTENTS
+            first, *others = (replace(each, shows_contents=shows_contents) for each in (first, *others))
         names = dict.fromkeys(name for other in others if (name := other.name_beside(first)) is not None)
         reason = common_reason(described.reason for described in (first, *others))
         changes.append(replace(first.change, reason=reason, other_names=tuple(names)))
