@@ -81,6 +81,7 @@ def test_name_that_is_gone_is_one_breaking_change(changes_of, old, new, sentence
     ("old", "new"),
     [
         (LOWER, ""),
+        (SETTINGS[: SETTINGS.index("manager:")], ""),
         ("ns/arm_controller", "$(arg ns)/arm_controller"),
         ("  lower:", "  $(arg side)lower:"),
         ("  lower: {has_velocity_limits: true, max_velocity", "  lower: {has_velocity_limits: false, max_velocity"),

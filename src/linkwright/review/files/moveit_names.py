@@ -79,9 +79,12 @@ class MoveItRules:
         return joint_name_reason(joint["name"]) if has_limits and self._is_gone(_LIMITED_JOINT, joint["name"]) else None
 
     def _is_gone(self, pattern: re.Pattern[str], name: str) -> bool:
-        """Return whether the new file has no part of a kind with a name, nor a substitution that can be the name."""
+        """Return whether the new file has parts of a kind, but none with a name or a substitution that can be it.
+
+        A list that is gone as a whole can be in another file or form.
+        """
         names = self._names[pattern]
-        return name not in names and not any(may_be(each, name) for each in names)
+        return bool(names) and name not in names and not any(may_be(each, name) for each in names)
 
 
 def _planner_reason(name: str) -> Phrase:
