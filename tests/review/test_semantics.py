@@ -52,6 +52,13 @@ def test_changes_of_a_semantic_description(package, compare, old, new, sentence,
     assert (None if change.reason is None else str(change.reason)) == reason
 
 
+def test_joint_that_becomes_passive_is_not_breaking(package, compare):
+    package.commit({PATH: SRDF})
+    text = SRDF.replace('<joint name="left"/>', "")
+    package.write({PATH: text.replace("</robot>", '<passive_joint name="left"/></robot>')})
+    assert [change.reason for change in subject(compare(package), PATH).changes if change.reason] == []
+
+
 def test_fixed_joint_that_leaves_a_group_is_not_breaking(package, compare):
     package.commit({PATH: SRDF, "arm_description/urdf/hand.xacro": '<robot><joint type="fixed" name="left"/></robot>'})
     package.write({PATH: SRDF.replace('<joint name="left"/>', "")})

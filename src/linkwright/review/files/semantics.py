@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,9 +54,10 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
     """Compare two semantic descriptions by their root elements."""
     old, new = ({(entry.tag, entry.name): entry for entry in _entries(root)} for root in (old_root, new_root))
     renamed = dict(_renamed(old, new))
+    passive = {name for tag, name in new if tag == "passive_joint"}
     for key, entry in new.items():
         if key in old:
-            _compare_entries(pair, old[key], entry)
+            _compare_entries(pair, old[key], entry, passive)
         elif key not in renamed.values():
             pair.add(phrase("{entry} added", entry=_title(entry)), pair.location(entry.element.span()))
     for key, entry in old.items():
@@ -150,7 +151,7 @@ def _title(entry: _Entry) -> Phrase:
     return phrase("{tag} '{name}'", tag=term(entry.tag), name=entry.name)
 
 
-def _compare_entries(pair: FilePair, old: _Entry, new: _Entry) -> None:
+def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive: Collection[str]) -> None:
     changes: list[str] = []
     for name in dict.fromkeys([*new.values, *old.values]):
         before, after = old.values.get(name), new.values.get(name)
@@ -162,19 +163,20 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry) -> None:
             changes.append(f"{name} {before} -> {after}")
     if changes:
         text = phrase("{entry}: {changes}", entry=_title(new), changes=joined_first(changes, MAX_NAMES))
-        pair.add(text, pair.location(new.element.span()), _lost_joints_reason(pair.versions.old, old, new))
+        pair.add(text, pair.location(new.element.span()), _lost_joints_reason(pair.versions.old, old, new, passive))
 
 
-def _lost_joints_reason(version: Version, old: _Entry, new: _Entry) -> Phrase | None:
+def _lost_joints_reason(version: Version, old: _Entry, new: _Entry, passive: Collection[str]) -> Phrase | None:
     """Return why it is breaking that a group has other joints, or None if it is not.
 
-    A group that names a chain, links or other groups instead can still have the joints. Fixed joints have no positions.
+    A group that names a chain, links or other groups instead can still have the joints. Programs do not
+    move fixed and passive joints.
     """
     added = [member for member in new.values if member not in old.values]
     lost = [name.removeprefix(_JOINT) for name in old.values if name.startswith(_JOINT) and name not in new.values]
     if old.tag != "group" or not lost or not all(map(_is_literal_joint, added)):
         return None
-    fixed = _fixed_joints(version)
+    fixed = {*passive, *_fixed_joints(version)}
     lost = [name for name in lost if name not in fixed]
     return None if not lost else counted(
         "programs that move the joint {names} of the group '{group}' do not find it",
