@@ -204,3 +204,43 @@ def test_removed_file_has_its_values_and_the_number_of_the_others(changes_of):
     found, _ = changes_of(text, None)
     assert sentences(found)[0].startswith("parameter file removed: gain0 0, gain1 1, ")
     assert sentences(found)[0].endswith(" and 2 more")
+
+
+PLANNERS = """planners:
+  SBLkOld: {type: g.SBL, range: 0.0}
+  ESTkOld: {type: g.EST, range: 0.0, bias: 0.05}
+  RRTkOld: {type: g.RRT, range: 0.0, bias: 0.05}
+  RRTtoldkOld: {type: g.RRTstar, range: 0.0, bias: 0.05, delay: 1}
+"""
+
+
+def test_parts_whose_names_lose_the_same_end_are_renamed_beside_added_ones(changes_of):
+    added = "  BiEST: {type: g.BiEST, range: 0.0, bias: 0.05}\n  Lazy: {type: g.Lazy, range: 0.0}\n"
+    found, _ = changes_of(PLANNERS, PLANNERS.replace("kOld", "") + added)
+    assert [text.partition(":")[0] for text in sentences(found)] == [
+        "planners.SBLkOld renamed to planners.SBL",
+        "planners.BiEST added",
+        "planners.Lazy added",
+    ]
+    assert found.changes[0].other_names == tuple(
+        f"planners.{name}kOld -> planners.{name}" for name in ("EST", "RRT", "RRTtold")
+    )
+
+
+def test_part_with_a_unique_text_is_not_another_part_with_equal_numbers(changes_of):
+    text = "filters:\n  first: {type: clip, low: 1, high: 2, rate: 3, size: 4}\n"
+    new = text.replace("first", "b").replace("rate: 3", "rate: 5")
+    new = new.replace("  b", "  a: {type: mean, low: 1, high: 2, rate: 3, size: 4}\n  b")
+    found, _ = changes_of(text, new)
+    assert sentences(found) == [
+        "filters.first renamed to filters.b",
+        "filters.b.rate 3 -> 5",
+        "filters.a added: type mean, low 1, high 2, rate 3, size 4",
+    ]
+
+
+def test_name_that_gains_a_part_wins_over_another_with_equal_contents(changes_of):
+    text = "filters:\n  scan: {low: 1, high: 2, rate: 3, size: 4}\n"
+    new = "filters:\n  depth: {low: 1, high: 2, rate: 3, size: 4}\n  scan_left: {low: 1, high: 2, rate: 3, size: 5}\n"
+    found, _ = changes_of(text, new)
+    assert sentences(found)[:2] == ["filters.scan renamed to filters.scan_left", "filters.scan_left.size 4 -> 5"]

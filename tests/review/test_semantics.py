@@ -24,7 +24,11 @@ STATE = '  <group_state name="home" group="manipulator"><joint name="upper_joint
     ("old", "new", "sentence", "reason"),
     [
         ('value="0"', 'value="1.5"', "group_state 'manipulator/home': upper_joint 0 -> 1.5", None),
-        ('<joint name="left"/>', '<joint name="middle"/>', "group 'hand': + joint middle, - joint left", None),
+        ('<joint name="left"/>', '<joint name="middle"/>', "group 'hand': + joint middle, - joint left",
+         "programs that move the joint 'left' of the group 'hand' do not find it"),
+        ('<joint name="left"/><joint name="right"/>', '<chain base_link="lower" tip_link="tip"/>',
+         "group 'hand': + chain lower tip, - joint left, - joint right", None),
+        ('<joint name="left"/>', '<joint name="left"/><joint name="middle"/>', "group 'hand': + joint middle", None),
         (STATE, "", "group_state 'manipulator/home' removed",
          "programs that move to the state 'manipulator/home' do not find it"),
         ('name="home"', 'name="rest"', "group_state 'manipulator/home' renamed to 'manipulator/rest'",
@@ -46,6 +50,21 @@ def test_changes_of_a_semantic_description(package, compare, old, new, sentence,
     (change,) = subject(compare(package), PATH).changes
     assert str(change.sentence) == sentence
     assert (None if change.reason is None else str(change.reason)) == reason
+
+
+def test_joint_that_becomes_passive_is_not_breaking(package, compare):
+    package.commit({PATH: SRDF})
+    text = SRDF.replace('<joint name="left"/>', "")
+    package.write({PATH: text.replace("</robot>", '<passive_joint name="left"/></robot>')})
+    assert [change.reason for change in subject(compare(package), PATH).changes if change.reason] == []
+
+
+def test_fixed_joint_that_leaves_a_group_is_not_breaking(package, compare):
+    package.commit({PATH: SRDF, "arm_description/urdf/hand.xacro": '<robot><joint type="fixed" name="left"/></robot>'})
+    package.write({PATH: SRDF.replace('<joint name="left"/>', "")})
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.sentence) == "group 'hand': - joint left"
+    assert change.reason is None
 
 
 @pytest.mark.parametrize(

@@ -171,3 +171,35 @@ def test_equal_changes_at_different_places_are_one(repository, compare):
     assert str(change.sentence) == "world house model m0 link wall_0 visual v0 transparency: 0.5 -> 0.2"
     assert change.other_names[0] == "m1 link wall_1 visual v1"
     assert len(change.other_names) == 3
+
+
+LIGHT = """<sdf version="1.6">
+  <world name="yard">
+    <light name="sun" type="point"><cast_shadows>1</cast_shadows><pose frame="">0 0 9 0 0 0</pose></light>
+    <plugin name="p" filename="p.so"><mode>1</mode></plugin>
+  </world>
+</sdf>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [(">1</cast", ">true</cast"), (' frame=""', ""), (' frame=""', ' relative_to=""')]
+)
+def test_equal_values_in_other_words_are_no_change(repository, compare, old, new):
+    repository.commit({PATH: LIGHT})
+    repository.write({PATH: LIGHT.replace(old, new)})
+    assert compare(repository).subjects == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (">1</cast", ">false</cast", "world yard light sun cast_shadows: 1 -> false"),
+        (' frame=""', ' frame="a"', "world yard light sun pose @frame: (empty) -> a"),
+        (">1</mode", ">true</mode", "world yard plugin p mode: 1 -> true"),
+    ],
+)
+def test_other_truth_value_or_frame_is_a_change(repository, compare, old, new, expected):
+    repository.commit({PATH: LIGHT})
+    repository.write({PATH: LIGHT.replace(old, new)})
+    assert sentences(subject(compare(repository), PATH)) == [expected]

@@ -13,6 +13,7 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.key_readers import KeyReaders
+from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
     has_other_type,
@@ -27,6 +28,7 @@ from linkwright.review.files.yaml_includes import with_includes
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
 from linkwright.review.list_changes import shortened
+from linkwright.review.merging import common_reason
 from linkwright.review.versions import Version
 
 _MAX_BYTES = 4 << 20
@@ -107,15 +109,21 @@ def _root(text: str) -> yaml.Node | None:
 def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | None) -> Iterator[ValueChange]:
     labels = item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else yaml_values(root, labels) for root in (old_root, new_root))
-    old = _with_new_names(pair, old_values, new)
+    moveit = MoveItRules(old_values, new)
+    old = _with_new_names(pair, old_values, new, moveit)
     rules = NameRules(old, new)
     readers = KeyReaders(pair.versions, pair.new_path)
     for name, value in new.items():
         old_value = old.get(name)
-        if old_value is not None and not _are_equal(name, old_value, value):
+        if (
+            old_value is not None
+            and not _are_equal(name, old_value, value)
+            and not _is_new_label(name, old_value, value)
+        ):
             location = Location(pair.new_path, value.line, value.column)
             shown = _shown_values(old_value, value)
-            reason = rules.change_reason(name, old_value, value) or readers.name_reason(name, old_value, value)
+            reason = moveit.change_reason(name, old_value, value) or rules.change_reason(name, old_value, value)
+            reason = reason or readers.name_reason(name, old_value, value)
             yield ValueChange(name, "changed", shown, location, reason)
     for name, values_below in _lone_parts(new, old):
         first = next(iter(values_below.values()))
@@ -125,7 +133,7 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)
         below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
-        reasons = (rules.removal_reason(parameter, value) for parameter, value in below)
+        reasons = (moveit.removal_reason(each) or rules.removal_reason(each, value) for each, value in below)
         reason = next((reason for reason in reasons if reason is not None), None)
         reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new))
         yield ValueChange(name, "removed", _lone_content(name, values_below), location, reason)
@@ -151,6 +159,11 @@ def _is_label(name: str, value: YamlValue) -> bool:
     """Return whether a value is the name of an item of a list, which is the label of the item in the path."""
     item, _, key = name.rpartition(".")
     return key in _NAMES_OF_ITEMS and item.endswith(f"[{value.text}]")
+
+
+def _is_new_label(name: str, old: YamlValue, new: YamlValue) -> bool:
+    """Return whether a changed value is the name of an item of a list whose path is renamed with it."""
+    return old.text != new.text and _is_label(name, new)
 
 
 def _lone_parts(
@@ -180,7 +193,7 @@ def _is_below(name: str, part: str) -> bool:
 
 
 def _with_new_names(
-    pair: FilePair, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]
+    pair: FilePair, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], moveit: MoveItRules
 ) -> Mapping[str, YamlValue]:
     """Add the renamed and moved parts of a file, and return the old values with the new names of these parts."""
     renamed = renamed_parts(old, new)
@@ -190,13 +203,15 @@ def _with_new_names(
         text = phrase("{old} moved to {name}", old=old_part, name=new_part)
         if parent_of(old_part) == parent_of(new_part):
             text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
-        reason = renaming_reason(old_part, new_part, old)
+        reason = moveit.renaming_reason(old_part) or renaming_reason(old_part, new_part, old)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         change = Change(text, effect, reason, Location(pair.new_path, inside.line, inside.column))
-        groups.setdefault((edit_of(old_part, new_part), str(reason)), []).append(change)
+        kind = None if reason is None else reason.template
+        groups.setdefault((edit_of(old_part, new_part), kind), []).append(change)
     for first, *others in groups.values():
         names = tuple(f"{each.sentence.arguments['old']} -> {each.sentence.arguments['name']}" for each in others)
-        pair.changes.append(replace(first, other_names=names))
+        reason = common_reason(each.reason for each in (first, *others))
+        pair.changes.append(replace(first, reason=reason, other_names=names))
     return with_new_parts(old, renamed)
 
 

@@ -66,7 +66,7 @@ class NameRules:
         if controller is not None:
             return phrase("the controller '{name}' offers other topics and actions", name=controller["controller"])
         gone = _items(old) - _items(new)
-        gone -= {name for name in gone if any(_may_be(each, name) for each in _items(new))}
+        gone -= {name for name in gone if any(may_be(each, name) for each in _items(new))}
         if _TRANSFORMS.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
             return phrase("the node does not publish its transform any more")
         is_offered = offers_frame(parameter)
@@ -79,7 +79,7 @@ class NameRules:
         if gone and _PLUGINS.search(parameter):
             return _plugin_reason(gone)
         if gone and old_value.is_list and _CONTROLLER_LIST.search(parameter):
-            return _controller_reason(", ".join(sorted(gone)))
+            return controller_reason(", ".join(sorted(gone)))
         return type_reason(old_value, new_value) if is_parameter(parameter) else None
 
     def removal_reason(self, parameter: str, old: str) -> Phrase | None:
@@ -91,7 +91,7 @@ class NameRules:
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
         if controller is not None and controller["controller"] not in self._new_controllers:
-            return _controller_reason(controller["controller"])
+            return controller_reason(controller["controller"])
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
@@ -100,7 +100,7 @@ class NameRules:
         if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         own = next(_ros1_controllers({parameter: old}), None)
-        return None if own is None else _controller_reason(_slashed(own))
+        return None if own is None else controller_reason(_slashed(own))
 
     def _is_in_lost_group(self, parameter: str, root: str) -> bool:
         """Return whether the group of a parameter is gone. A single value falls back to the default of the node."""
@@ -151,7 +151,8 @@ def type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
     )
 
 
-def _controller_reason(name: str) -> Phrase:
+def controller_reason(name: str) -> Phrase:
+    """Return why it is breaking that a controller is gone."""
     return phrase("programs that load or command the controller '{name}' do not find it", name=name)
 
 
@@ -204,9 +205,9 @@ def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -
         for name in _ros1_controllers({name: value.text for name, value in values.items()})
         if name == part or name.startswith(f"{part}.")
     ]
-    names = [name for name in names if not _may_be(f"{new_part}{name.removeprefix(part)}", name)]
+    names = [name for name in names if not may_be(f"{new_part}{name.removeprefix(part)}", name)]
     if names:
-        return _controller_reason(", ".join(map(_slashed, names)))
+        return controller_reason(", ".join(map(_slashed, names)))
     node, new_node = node_of_parameter(f"{part}."), node_of_parameter(f"{new_part}.")
     if node is None or part_names(part)[:-1] == part_names(new_part)[:-1]:
         return _renamed_node_reason(part, new_part, values)
@@ -239,7 +240,7 @@ def matches_node(name: str, node: str) -> bool:
     return re.fullmatch(pattern, "/" + "/".join(word for word in re.split(r"[./]", node) if word)) is not None
 
 
-def _may_be(text: str, name: str) -> bool:
+def may_be(text: str, name: str) -> bool:
     """Return whether a text with substitutions, such as ``$(arg arm)_joint1``, can be a name."""
     pattern, count = _SUBSTITUTION.subn(".*", re.escape(text))
     return count > 0 and re.fullmatch(pattern, name) is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
 from linkwright.review.files.parameter_names import part_names
@@ -16,12 +16,16 @@ _MIN_FACTS = 6
 _MIN_SIMILARITY = 0.6
 _MIN_ALIKE = 2
 """The minimum number of neighboring parts, renamed in the same way, that need not have many values."""
+_MAX_PAIRS = 2_500
+"""The maximum number of pairs of old and new neighboring parts whose names are compared."""
 _MAX_NEIGHBORS = 200
 """The maximum number of new parts beside a part that are compared with it."""
 _MAX_PARTS = 60
 """The maximum number of parts of either version for which moved parts are searched."""
 _ITEM = re.compile(r"\[(old )?\d+\]$")
 """The end of the path of an item of a list that has no name."""
+_NUMBER_OR_TRUTH = re.compile(r"[^=]*=([-+.,\s\d\[\]e]*|true|false)", re.IGNORECASE)
+"""A name and a value that many parts can have in common, such as a limit."""
 _Facts = Counter[str]
 """The names and values in a part, alone and together."""
 
@@ -32,14 +36,10 @@ def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) ->
     renamed = dict(_renamed_alike(old_parts, new_parts))
     rest = {name: facts for name, facts in new_parts.items() if name not in renamed.values() and not _ITEM.search(name)}
     neighbors = _beside_each_other(rest)
-    for old_name, first in old_parts.items():
-        candidates = neighbors.get(parent_of(old_name), [])
-        if old_name in renamed or first.total() < _MIN_FACTS or len(candidates) > _MAX_NEIGHBORS:
-            continue
-        new_name = next((name for name in candidates if _similarity(first, rest[name]) >= _MIN_SIMILARITY), None)
-        if new_name is not None:
-            renamed[old_name] = new_name
-            candidates.remove(new_name)
+    old_rest = {name: facts for name, facts in old_parts.items() if name not in renamed}
+    for parent, gone in _beside_each_other(old_rest).items():
+        come = neighbors.get(parent, [])
+        renamed |= _most_similar({name: old_rest[name] for name in gone}, {name: rest[name] for name in come})
     old_rest = {name: facts for name, facts in old_parts.items() if name not in renamed}
     new_names = set(renamed.values())
     new_rest = {name: facts for name, facts in new_parts.items() if name not in new_names}
@@ -64,7 +64,10 @@ def edit_of(old: str, new: str) -> Hashable:
     parent, new_parent = parent_of(old), parent_of(new)
     if parent != new_parent:
         return parent, new_parent
-    return name_edit(old.removeprefix(parent), new.removeprefix(parent))
+    name, new_name = old.removeprefix(parent), new.removeprefix(parent)
+    if any(map(str.isalpha, name)) and (name.startswith(new_name) or new_name.startswith(name)):
+        return name[len(new_name) :], new_name[len(name) :], False
+    return name_edit(name, new_name)
 
 
 def parent_of(part: str) -> str:
@@ -73,18 +76,78 @@ def parent_of(part: str) -> str:
 
 
 def _renamed_alike(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
-    """Yield the parts of which several beside each other are renamed in the same way, in their order.
+    """Yield the parts of which several beside each other are renamed in the same way.
 
-    Such parts are the joints of a controller that all get another prefix.
+    Such parts are the joints of a controller that all get another prefix. The edit of the most names comes first.
+    Unless all old or all new parts have it, and the same keys, their values must be similar, too.
     """
     old_groups, new_groups = _beside_each_other(old), _beside_each_other(new)
     for parent, gone in old_groups.items():
         come = new_groups.get(parent, [])
-        pairs = list(zip(gone, come, strict=False))
-        if len(gone) != len(come) or len(pairs) < _MIN_ALIKE or any(_ITEM.search(name) for name in (*gone, *come)):
+        if any(_ITEM.search(name) for name in (*gone, *come)):
             continue
-        if len({edit_of(*pair) for pair in pairs}) == 1 and all(_inside(old[a]) == _inside(new[b]) for a, b in pairs):
-            yield from pairs
+        used: set[str] = set()
+        for group in _pairs_by_edit(gone, come):
+            pairs = _free_pairs(group, used)
+            is_of_all = len(pairs) in (len(gone), len(come))
+            if not (is_of_all and all(_inside(old[first]) == _inside(new[second]) for first, second in pairs)):
+                pairs = [pair for pair in pairs if _similarity(old[pair[0]], new[pair[1]]) >= _MIN_SIMILARITY]
+            if len(pairs) >= _MIN_ALIKE:
+                used.update(name for pair in pairs for name in pair)
+                yield from pairs
+
+
+def _pairs_by_edit(gone: Sequence[str], come: Sequence[str]) -> list[list[tuple[str, str]]]:
+    """Return the pairs of old and new names that differ in the same way, the largest groups first."""
+    groups: dict[Hashable, list[tuple[str, str]]] = {}
+    pairs = product(gone, come) if len(gone) * len(come) <= _MAX_PAIRS else zip(gone, come, strict=False)
+    for pair in pairs:
+        groups.setdefault(edit_of(*pair), []).append(pair)
+    return sorted(groups.values(), key=len, reverse=True)
+
+
+def _free_pairs(pairs: Iterable[tuple[str, str]], used: Collection[str]) -> list[tuple[str, str]]:
+    """Return the pairs of names that no other pair has, in their order."""
+    free: dict[str, str] = {}
+    for old_name, new_name in pairs:
+        if not {old_name, new_name} & {*used, *free, *free.values()}:
+            free[old_name] = new_name
+    return list(free.items())
+
+
+def _most_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict[str, str]:
+    """Return the parts beside each other that have similar contents: the new paths, by old path.
+
+    A text that only one part of each version has, such as a type, counts more than equal numbers.
+    """
+    if len(new) > _MAX_NEIGHBORS:
+        return {}
+    own_old, own_new = _owners(old), _owners(new)
+    shared = Counter((owner, own_new[text]) for text, owner in own_old.items() if text in own_new)
+    most: Counter[str] = Counter()
+    for pair, count in shared.items():
+        most |= Counter(dict.fromkeys(pair, count))
+    ranked: list[tuple[tuple[int, bool, float], str, str]] = []
+    for old_name, new_name in product(old, new):
+        count = shared[old_name, new_name]
+        if old[old_name].total() < _MIN_FACTS or count < max(most[old_name], most[new_name]):
+            continue
+        similarity = _similarity(old[old_name], new[new_name])
+        if similarity >= _MIN_SIMILARITY:
+            is_longer = old_name.startswith(new_name) or new_name.startswith(old_name)
+            ranked.append(((count, is_longer, similarity), old_name, new_name))
+    ranked.sort(key=lambda pair: pair[0], reverse=True)
+    return dict(_free_pairs(((old_name, new_name) for _, old_name, new_name in ranked), ()))
+
+
+def _owners(parts: Mapping[str, _Facts]) -> dict[str, str]:
+    """Return the parts that alone have a text, by the text with its name."""
+    owners: dict[str, list[str]] = {}
+    for name, facts in parts.items():
+        for fact in facts:
+            if "=" in fact and not _NUMBER_OR_TRUTH.fullmatch(fact):
+                owners.setdefault(fact, []).append(name)
+    return {fact: names[0] for fact, names in owners.items() if len(names) == 1}
 
 
 def _inside(facts: _Facts) -> set[str]:

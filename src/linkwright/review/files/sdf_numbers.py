@@ -1,4 +1,4 @@
-"""Changed numbers of SDF: those that only differ by rounding, and those of the inertial of a link."""
+"""Changed values of SDF: those that are equal but written differently, and those of the inertial of a link."""
 
 from __future__ import annotations
 
@@ -13,6 +13,10 @@ from linkwright.diagnostics import Phrase, joined, phrase
 
 _INERTIAL = re.compile(r"(?P<inertial>(?:.* )?inertial) (?P<value>mass|pose|inertia i[xyz]{2})")
 """The path of a value of an inertial."""
+_PLUGIN = re.compile(r"(^| )plugin ")
+_SAME_TRUTHS = ({"1", "true"}, {"0", "false"})
+_FRAME = re.compile(r"@(frame|relative_to)$")
+"""The attribute of a pose that names its frame."""
 _MOMENTS = frozenset({"ixx", "iyy", "izz"})
 _ROUNDING = 1e-6
 """The maximum difference of two equal values, relative to the largest number of a value."""
@@ -54,6 +58,11 @@ class InertialDifference(Difference):
 def without_rounding(differences: Iterable[Difference]) -> Iterator[Difference]:
     """Yield differences without those of numbers that are equal except for rounding."""
     return (difference for difference in differences if not _is_rounding(difference))
+
+
+def without_same_values(differences: Iterable[Difference]) -> Iterator[Difference]:
+    """Yield differences without those of equal values: ``1`` and ``true``, and a frame that is empty or not given."""
+    return (difference for difference in differences if not (_is_same_truth(difference) or _is_empty_frame(difference)))
 
 
 def with_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
@@ -106,6 +115,18 @@ def _is_rounding(difference: Difference) -> bool:
         return False  # numbers of a counter, such as a seed
     limit = max(_NOTHING, _ROUNDING * max(map(abs, (*old, *new))))
     return all(abs(first - second) <= limit for first, second in zip(old, new, strict=True))
+
+
+def _is_same_truth(difference: Difference) -> bool:
+    """Return whether a difference is that of a truth value, not of a parameter of a plugin, which can be a text."""
+    values = {difference.old, difference.new}
+    is_of_plugin = _PLUGIN.search(f"{difference.name} {difference.property}") is not None
+    return difference.kind == "changed" and values in _SAME_TRUTHS and not is_of_plugin
+
+
+def _is_empty_frame(difference: Difference) -> bool:
+    values = {difference.old or "", difference.new or ""}
+    return difference.element is None and _FRAME.search(difference.property) is not None and values == {""}
 
 
 def _without_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, term
+from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, quoted_names, term
 from linkwright.lint.targets import walk
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
@@ -18,6 +18,11 @@ from linkwright.xmltree import Element
 
 _NAMED = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
 _PAIRS = ("disable_collisions", "enable_collisions")
+_JOINT = "joint "
+"""The start of a member of a group that is a joint."""
+_JOINT_TAG = re.compile(r"<joint\s[^<>]*>")
+_FIXED = re.compile(r"\stype\s*=\s*[\"']fixed[\"']")
+_NAME = re.compile(r"\sname\s*=\s*[\"']([^\"']*)[\"']")
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 
 
@@ -49,9 +54,10 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
     """Compare two semantic descriptions by their root elements."""
     old, new = ({(entry.tag, entry.name): entry for entry in _entries(root)} for root in (old_root, new_root))
     renamed = dict(_renamed(old, new))
+    passive = {name for tag, name in new if tag == "passive_joint"}
     for key, entry in new.items():
         if key in old:
-            _compare_entries(pair, old[key], entry)
+            _compare_entries(pair, old[key], entry, passive)
         elif key not in renamed.values():
             pair.add(phrase("{entry} added", entry=_title(entry)), pair.location(entry.element.span()))
     for key, entry in old.items():
@@ -145,7 +151,7 @@ def _title(entry: _Entry) -> Phrase:
     return phrase("{tag} '{name}'", tag=term(entry.tag), name=entry.name)
 
 
-def _compare_entries(pair: FilePair, old: _Entry, new: _Entry) -> None:
+def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive: Collection[str]) -> None:
     changes: list[str] = []
     for name in dict.fromkeys([*new.values, *old.values]):
         before, after = old.values.get(name), new.values.get(name)
@@ -157,7 +163,37 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry) -> None:
             changes.append(f"{name} {before} -> {after}")
     if changes:
         text = phrase("{entry}: {changes}", entry=_title(new), changes=joined_first(changes, MAX_NAMES))
-        pair.add(text, pair.location(new.element.span()))
+        pair.add(text, pair.location(new.element.span()), _lost_joints_reason(pair.versions.old, old, new, passive))
+
+
+def _lost_joints_reason(version: Version, old: _Entry, new: _Entry, passive: Collection[str]) -> Phrase | None:
+    """Return why it is breaking that a group has other joints, or None if it is not.
+
+    A group that names a chain, links or other groups instead can still have the joints. Programs do not
+    move fixed and passive joints.
+    """
+    added = [member for member in new.values if member not in old.values]
+    lost = [name.removeprefix(_JOINT) for name in old.values if name.startswith(_JOINT) and name not in new.values]
+    if old.tag != "group" or not lost or not all(map(_is_literal_joint, added)):
+        return None
+    fixed = {*passive, *_fixed_joints(version)}
+    lost = [name for name in lost if name not in fixed]
+    return None if not lost else counted(
+        "programs that move the joint {names} of the group '{group}' do not find it",
+        "programs that move the joints {names} of the group '{group}' do not find them",
+        len(lost), names=quoted_names(lost), group=new.name,
+    )  # fmt: skip
+
+
+def _is_literal_joint(member: str) -> bool:
+    return member.startswith(_JOINT) and not _EXPRESSION.search(member)
+
+
+def _fixed_joints(version: Version) -> set[str]:
+    """Return the fixed joints in the descriptions of a version, by their names as they are written."""
+    texts = (version.text(path) for path in version.paths((".urdf", ".xacro")))
+    tags = (match[0] for text in texts for match in _JOINT_TAG.finditer(text))
+    return {name[1] for tag in tags if _FIXED.search(tag) and (name := _NAME.search(tag))}
 
 
 def _are_equal(old: str, new: str) -> bool:

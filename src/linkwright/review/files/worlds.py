@@ -17,7 +17,12 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.merged_paths import MergedPaths, differing_parts, path_pattern
 from linkwright.review.files.sdf_contents import added_text, all_content, names_in, shapes_and_mass
 from linkwright.review.files.sdf_figures import model_figures
-from linkwright.review.files.sdf_numbers import InertialDifference, with_inertials, without_rounding
+from linkwright.review.files.sdf_numbers import (
+    InertialDifference,
+    with_inertials,
+    without_rounding,
+    without_same_values,
+)
 from linkwright.review.files.templates import is_template, template_elements
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
@@ -44,7 +49,8 @@ def compare_worlds(pair: FilePair) -> None:
     elements = pair.read(_elements)
     if elements is None:
         return
-    found = list(with_inertials(without_rounding(ElementComparison().child_differences(*elements))))
+    changed = without_same_values(ElementComparison().child_differences(*elements))
+    found = list(with_inertials(without_rounding(changed)))
     added = added_topics(found)
     differences = with_replaced_plugins(found)
     changes = [_WorldChange(difference, _breaking_reason(difference, added)) for difference in differences]

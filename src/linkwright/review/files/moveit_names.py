@@ -1,0 +1,91 @@
+"""The names in parameter files of MoveIt that other programs use: controllers, planners and joints with limits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import joint_name_reason
+from linkwright.review.files.parameter_names import controller_reason, may_be, part_names
+from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.list_changes import list_items
+
+_CONTROLLER = re.compile(r"(?:.*[._])?controller_list\[(?!(?:old )?\d+\])(?P<name>[^\]]+)\]")
+"""The path of a controller in a list of mappings."""
+_PLANNER = re.compile(r"(?:.*\.)?planner_configs\.(?P<name>[^.\[]+)")
+"""The path of the settings of a planner."""
+_PLANNERS = re.compile(r"(?:.*\.)?planner_configs")
+"""The path of the list of the planners of a group."""
+_LIMITED_JOINT = re.compile(r"(?:.*\.)?joint_limits\.(?P<name>[^.\[]+)")
+"""The path of the limits of a joint."""
+_LIMIT = re.compile(r"has_\w+_limits|(max|min)_\w+")
+"""The last name in the path of a limit of a joint."""
+_ACTION = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.action_ns")
+"""The path of the namespace of the action that MoveIt calls."""
+
+
+class MoveItRules:
+    """The rules for breaking changes of a parameter file of MoveIt.
+
+    Args:
+        old: the old values by path, without the new names of renamed parts.
+        new: the new values by path.
+    """
+
+    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
+        self._old = old
+        self._names = {
+            pattern: {match["name"] for part in parts if (match := pattern.fullmatch(part))}
+            for parts in [{part for name in new for part in part_names(name)}]
+            for pattern in (_CONTROLLER, _PLANNER, _LIMITED_JOINT)
+        }
+        parts = {part for name in old for part in part_names(name)}
+        self._old_planners = {match["name"] for part in parts if (match := _PLANNER.fullmatch(part))}
+
+    def change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+        """Return why a changed value is breaking, or None if it is not.
+
+        A planner whose settings are gone, too, is a change of these settings.
+        """
+        action = _ACTION.fullmatch(parameter)
+        if action is not None and old.text and not may_be(new.text, old.text):
+            name = f"{action['controller']}/{old.text}"
+            return phrase("the action server '{name}' gets no goals", name=name)
+        if not _PLANNERS.fullmatch(parameter) or not old.is_list:
+            return None
+        items = list_items(new.text)
+        gone = {name for name in list_items(old.text) if name and not any(may_be(each, name) for each in items)}
+        gone -= {*items, *(self._old_planners - self._names[_PLANNER])}
+        return _planner_reason(", ".join(sorted(gone))) if gone else None
+
+    def removal_reason(self, parameter: str) -> Phrase | None:
+        """Return why a removed parameter is breaking, or None if it is not."""
+        for part in part_names(parameter):
+            for pattern, reason in ((_CONTROLLER, controller_reason), (_PLANNER, _planner_reason)):
+                match = pattern.fullmatch(part)
+                if match is not None and self._is_gone(pattern, match["name"]):
+                    return reason(match["name"])
+        return None
+
+    def renaming_reason(self, part: str) -> Phrase | None:
+        """Return why it is breaking to rename or move a part of the old file, or None if it is not."""
+        joint = _LIMITED_JOINT.fullmatch(part)
+        if joint is None:
+            return self.removal_reason(part)
+        has_limits = any(
+            name.startswith(f"{part}.") and _LIMIT.fullmatch(name.removeprefix(f"{part}.")) for name in self._old
+        )
+        return joint_name_reason(joint["name"]) if has_limits and self._is_gone(_LIMITED_JOINT, joint["name"]) else None
+
+    def _is_gone(self, pattern: re.Pattern[str], name: str) -> bool:
+        """Return whether the new file has parts of a kind, but none with a name or a substitution that can be it.
+
+        A list that is gone as a whole can be in another file or form.
+        """
+        names = self._names[pattern]
+        return bool(names) and name not in names and not any(may_be(each, name) for each in names)
+
+
+def _planner_reason(name: str) -> Phrase:
+    return phrase("programs that plan with the planner '{name}' do not find it", name=name)

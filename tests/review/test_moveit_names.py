@@ -1,0 +1,113 @@
+"""Breaking changes of the parameter files of MoveIt: controllers, actions, planners and joints with limits."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "a/config/m.yaml"
+SETTINGS = """controller_list:
+  - name: ns/arm_controller
+    action_ns: follow_joint_trajectory
+    type: FollowJointTrajectory
+    default: true
+  - name: ns/hand_controller
+    action_ns: grip
+    type: GripperCommand
+manager:
+  controller_names: [wrist]
+  wrist: {action_ns: follow, type: FollowJointTrajectory, joints: [upper]}
+joint_limits:
+  upper: {has_velocity_limits: true, max_velocity: 1.0, has_acceleration_limits: false}
+  lower: {has_velocity_limits: true, max_velocity: 2.0, has_acceleration_limits: false}
+planner_configs:
+  EST: {type: geometric::EST, range: 0.0, goal_bias: 0.05}
+  RRT: {type: geometric::RRT, range: 0.0, delay: 1}
+arm:
+  planner_configs: [EST, RRT]
+"""
+HAND = "  - name: ns/hand_controller\n    action_ns: grip\n    type: GripperCommand\n"
+LOWER = "  lower: {has_velocity_limits: true, max_velocity: 2.0, has_acceleration_limits: false}\n"
+RRT = "  RRT: {type: geometric::RRT, range: 0.0, delay: 1}\n"
+
+
+@pytest.fixture
+def changes_of(repository, compare):
+    """Review two versions of a file, and return all changes, the breaking ones, and the reasons of these."""
+
+    def run(text: str, changed: str):
+        assert text != changed
+        repository.commit({"a/package.xml": PACKAGE_XML, PATH: text})
+        repository.write({PATH: changed})
+        result = compare(repository)
+        found = subject(result, PATH)
+        return sentences(found), breaking(result), [str(each.reason) for each in found.changes if each.reason]
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence", "reason"),
+    [
+        ("ns/arm_controller", "ns/base_controller",
+         "controller_list[ns/arm_controller] renamed to controller_list[ns/base_controller]",
+         "programs that load or command the controller 'ns/arm_controller' do not find it"),
+        (HAND, "", "controller_list[ns/hand_controller] removed: action_ns grip, type GripperCommand",
+         "programs that load or command the controller 'ns/hand_controller' do not find it"),
+        ("action_ns: grip", "action_ns: grasp", "controller_list[ns/hand_controller].action_ns grip -> grasp",
+         "the action server 'ns/hand_controller/grip' gets no goals"),
+        ("action_ns: follow,", "action_ns: go,", "manager.wrist.action_ns follow -> go",
+         "the action server 'wrist/follow' gets no goals"),
+        ("  lower:", "  elbow:", "joint_limits.lower renamed to joint_limits.elbow",
+         "controllers and programs that name the joint 'lower' do not find it"),
+        (RRT, "",
+         "planner_configs.RRT removed: type geometric::RRT, range 0.0, delay 1",
+         "programs that plan with the planner 'RRT' do not find it"),
+        ("  RRT:", "  RRTquick:", "planner_configs.RRT renamed to planner_configs.RRTquick",
+         "programs that plan with the planner 'RRT' do not find it"),
+        ("[EST, RRT]", "[RRT]", "arm.planner_configs [EST, RRT] -> [RRT]",
+         "programs that plan with the planner 'EST' do not find it"),
+    ],
+)  # fmt: skip
+def test_name_that_is_gone_is_one_breaking_change(changes_of, old, new, sentence, reason):
+    found, found_breaking, reasons = changes_of(SETTINGS, SETTINGS.replace(old, new))
+    assert found == found_breaking == [sentence]
+    assert reasons == [reason]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (LOWER, ""),
+        (SETTINGS[: SETTINGS.index("manager:")], ""),
+        ("ns/arm_controller", "$(arg ns)/arm_controller"),
+        ("  lower:", "  $(arg side)lower:"),
+        ("  lower: {has_velocity_limits: true, max_velocity", "  lower: {has_velocity_limits: false, max_velocity"),
+        ("action_ns: grip", "action_ns: $(arg action)"),
+        ("[EST, RRT]", "[RRT, EST]"),
+        ("joint_limits:", "limits:\n  joint_limits:"),
+    ],
+)
+def test_other_change_is_not_breaking(changes_of, old, new):
+    changed = SETTINGS.replace(old, new)
+    if new.startswith("limits:"):
+        start = changed.index("  upper:")
+        end = changed.index("planner_configs:\n  EST")
+        changed = changed[:start] + changed[start:end].replace("  ", "    ") + changed[end:]
+    assert changes_of(SETTINGS, changed)[1] == []
+
+
+def test_planner_that_is_also_gone_from_the_groups_is_breaking_once(changes_of):
+    _, found_breaking, _ = changes_of(SETTINGS, SETTINGS.replace(RRT, "").replace("[EST, RRT]", "[EST]"))
+    assert found_breaking == ["planner_configs.RRT removed: type geometric::RRT, range 0.0, delay 1"]
+
+
+def test_joints_that_are_renamed_alike_are_one_breaking_change(changes_of):
+    text = SETTINGS.replace("  upper:", "  left_upper:").replace("  lower:", "  left_lower:")
+    found, _, reasons = changes_of(text, text.replace("left", "right"))
+    assert found == ["joint_limits.left_upper renamed to joint_limits.right_upper"]
+    assert reasons == [
+        "controllers and programs that name the joint 'left_upper' do not find it; likewise for the others"
+    ]
