@@ -32,7 +32,7 @@ _NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|fra
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
 _SET_VARIABLE = re.compile(r"(?:^|.* )set [\w.]+(?: \d+)?")
-"""The path of a variable that a template sets; its name says nothing about how the value is used."""
+"""The path of a variable that a template sets; its name does not determine how the value is used."""
 _UNSEEN = frozenset(
     {"collision", "inertial", "plugin", "sensor", "physics", "axis", "light", "gravity", "scene", "gui", "static"}
 )
