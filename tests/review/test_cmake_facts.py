@@ -138,6 +138,32 @@ def test_new_executable_under_a_condition_is_shown_with_it(repository, compare):
     ]
 
 
+@pytest.mark.parametrize(
+    ("text", "command", "expected"),
+    [
+        (
+            AMENT,
+            "add_library(${PROJECT_NAME}_b src/b.cpp)",
+            ["built targets added: 'arm_b (if ROS_DISTRO STREQUAL x)'"],
+        ),
+        (ROSBUILD, "rosbuild_add_library(b src/b.cpp)", ["built libraries added: 'b (if ROS_DISTRO STREQUAL x)'"]),
+        (
+            ROSBUILD,
+            "rosbuild_add_library(${PROJECT_NAME}_b src/b.cpp)",
+            ["built libraries added: 'a_b (if ROS_DISTRO STREQUAL x)'"],
+        ),
+        (ROSBUILD, "rosbuild_add_library(${OTHER} src/b.cpp)", []),
+        (ROSBUILD, "rosbuild_add_library(core src/b.cpp)", []),
+    ],
+)
+def test_new_target_under_a_condition_that_does_not_hold_is_shown(repository, compare, text, command, expected):
+    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": text})
+    repository.write({"a/CMakeLists.txt": f"{text}if(ROS_DISTRO STREQUAL x)\n  {command}\nendif()\n"})
+    result = compare(repository)
+    assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
+    assert breaking(result) == []
+
+
 def test_package_that_moves_from_rosbuild_to_catkin_keeps_its_programs(repository, compare):
     repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": ROSBUILD})
     repository.write({"a/CMakeLists.txt": CATKIN})

@@ -118,6 +118,81 @@ def test_template_of_a_model_is_compared_without_its_statements(repository, comp
     assert str(change.sentence) == expected
 
 
+MACROS = """<?xml version="1.0"? encoding="utf-8">
+{%- macro gear(mass, name="a") -%}
+  {% set k = 27.2 %}{# grams #}
+  <link name="wheel">
+    <inertial><mass>2.0</mass></inertial>
+  </link>
+  <!-- {% set unused = 1 %} -->
+  <plugin name="drive {%- set x = 1 -%}" filename="libdrive.so"/>
+{%- endmacro -%}
+{% macro cap() %}<link name="cap"><pose>0 0 1 0 0 0</pose></link>{% endmacro %}
+<sdf version="1.6"><model name="m"><static>{{ gear(3) }}</static></model></sdf>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "line"),
+    [
+        ("27.2", "29 / 2", "macro gear set k: 27.2 -> 29 / 2", 3),
+        ("k = 27.2", "k =\n '<a>'", "macro gear set k: 27.2 -> '<a>'", 3),
+        ("(mass, name", "(mass, b, name", "macro gear @parameters: mass, name='a' -> mass, b, name='a'", 2),
+        ("2.0", "3.0", "macro gear link wheel inertial: mass 2 -> 3 kg", 5),
+        ('name="cap"', 'name="hood"', "macro cap link cap renamed to 'hood'", 10),
+        ("libdrive.so", "libgo.so", "macro gear plugin drive @filename: libdrive.so -> libgo.so", 8),
+        ("gear(3)", "gear(4)", "model m static: {{ gear(3) }} -> {{ gear(4) }}", 11),
+    ],
+)
+def test_macros_and_variables_of_a_template_are_compared(repository, compare, old, new, expected, line):
+    assert MACROS.count(old) == 1
+    path = "arm/models/arm.sdf.jinja"
+    repository.commit({path: MACROS})
+    repository.write({path: MACROS.replace(old, new)})
+    (change,) = subject(compare(repository), path).changes
+    assert str(change.sentence) == expected
+    assert change.location is not None
+    assert change.location.line == line
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("<link name='wheel'><pose>1</pose></link>", "<link name='{{ part }}'><pose>1</pose></link>"),
+        ("{% macro n() %}<plugin name='q' filename='libq.so'><topic>a</topic></plugin>{% endmacro %}", ""),
+        (
+            "{% macro m() %}{% set frame_sensor = 'a' %}{% endmacro %}",
+            "{% macro m() %}{% set frame_sensor = 'b' %}{% endmacro %}",
+        ),
+    ],
+)
+def test_name_that_a_template_may_keep_is_not_breaking(repository, compare, old, new):
+    path = "arm/models/arm.sdf.jinja"
+    text = f"<sdf>{old}</sdf>"
+    repository.commit({path: text})
+    repository.write({path: text.replace(old, new)})
+    result = compare(repository)
+    assert (len(subject(result, path).changes), breaking(result)) == (1, [])
+
+
+def test_quotes_around_texts_in_a_template_make_no_difference(repository, compare):
+    path = "arm/models/arm.sdf.jinja"
+    text = """<sdf>{% set a = "b" + '"c"' %}{% macro m(a="b") %}<static>{{ a + "c" }}</static>{% endmacro %}</sdf>"""
+    repository.commit({path: text})
+    repository.write({path: text.replace('"b"', "'b'").replace(' "c"', " 'c'")})
+    assert list(compare(repository).subjects) == []
+
+
+@pytest.mark.parametrize("suffix", [".sdf.jinja", ".world.em"])
+def test_template_in_which_no_difference_is_found_is_listed(repository, compare, suffix):
+    path = f"arm/models/arm{suffix}"
+    text = "<sdf>\n@# one\n{% if a %}\n<model name='a'/>\n{% endif %}\n</sdf>\n"
+    repository.commit({path: text})
+    repository.write({path: text.replace("one", "two").replace("if a", "if b")})
+    result = compare(repository)
+    assert (list(result.subjects), result.other_files) == ([], [path])
+
+
 def test_template_that_is_not_xml_is_a_problem(repository, compare):
     path = "arm/models/arm.sdf.jinja"
     repository.commit({path: "<sdf>{% if a %}<model name='a'>{% else %}<model name='b'>{% endif %}</model></sdf>"})

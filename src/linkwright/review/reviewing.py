@@ -35,6 +35,7 @@ from linkwright.review.files.maps import is_map, map_of_image
 from linkwright.review.files.mesh_groups import grouped_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
+from linkwright.review.files.templates import is_template
 from linkwright.review.findings import compare_findings, find
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
@@ -72,7 +73,7 @@ _LISTED = (
     *(SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS),
     SubjectKind.DEPENDENCIES,
 )
-"""The kinds whose changed files are listed with the other files if no difference is found."""
+"""The kinds whose changed files are listed with the other files if no difference is found, as are templates of SDF."""
 _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
 
@@ -152,7 +153,8 @@ class _Reviewer:
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         all_subjects = with_renamed_folders(self._versions, all_subjects)
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
-        reported |= {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
+        compared = {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
+        reported |= {path for path in compared if not is_template(path)}
         reported |= self._maps.keys()
         other_files = [
             file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported

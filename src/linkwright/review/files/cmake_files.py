@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
@@ -63,6 +63,7 @@ _IRRELEVANT = re.compile(
 )
 """The variables that change neither what is built nor what is installed."""
 _COMMENT = re.compile(r"#[^\n]*")
+_VARIABLE = re.compile(r"\$\{(\w+)\}")
 _ENVIRONMENT = re.compile(r"\bENV\{(\w+)\}")
 _STANDARDS = ("CMAKE_CXX_STANDARD", "CMAKE_C_STANDARD", "CMAKE_BUILD_TYPE")
 _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
@@ -78,11 +79,16 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
     facts = BuildFacts(package=_parent(path))
-    commands = list(CMakeProgram(file.parent).run(source))
+    program = CMakeProgram(file.parent)
+    commands = list(program.run(source))
     for reader in (_targets, _interfaces, _exports, _packages, _tests, _settings):
         facts.facts += reader(commands)
     facts.facts += _own_interfaces(commands, file.parent)
     facts.facts += _built_targets(commands)
+    folder_name = PurePosixPath(facts.package).name
+    if folder_name and any(command.name == "rosbuild_init" for command in commands):
+        program.variables.setdefault("PROJECT_NAME", folder_name)
+    facts.facts += _skipped_targets(source, commands, program.variables)
     facts.facts += _stops(source, commands)
     facts.targets = read_targets(commands)
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
@@ -206,18 +212,37 @@ class _BuiltNames:
 
 
 def _built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the targets that are built. In ROS 1, targets that are not installed can also be used."""
-    names = {command.name for command in commands}
-    is_ros1 = not names.isdisjoint(("catkin_package", "rosbuild_init"))
+    """Yield the targets that are built."""
     for command in commands:
         if command.name not in _EXECUTABLES + _LIBRARIES or not command.arguments or is_open(command.words[0]):
             continue
-        is_program = command.name in _EXECUTABLES
-        kind = FactKind.BUILT_TARGET
-        if is_ros1:
-            kind = FactKind.BUILT_EXECUTABLE if is_program else FactKind.BUILT_LIBRARY
         library_type = next((word for word in command.words[1:2] if word in _LIBRARY_TYPES), "")
-        yield _fact(kind, command.arguments[0], library_type)
+        yield _fact(_built_kind(command.name, commands), command.arguments[0], library_type)
+
+
+def _skipped_targets(source: SourceText, commands: Sequence[Command], variables: Mapping[str, str]) -> Iterator[Fact]:
+    """Yield the targets that are only built under conditions that do not hold here, such as another version of ROS."""
+
+    def with_values(text: str) -> str:
+        return _VARIABLE.sub(lambda match: variables.get(match[1], match[0]), text)
+
+    makers = [command for command in commands if command.name in _EXECUTABLES + _LIBRARIES and command.words]
+    built = {with_values(command.words[0]) for command in makers}
+    for statement, condition in conditional_statements(source):
+        if not condition or statement.name not in _EXECUTABLES + _LIBRARIES or not statement.tokens:
+            continue
+        token = statement.tokens[0]
+        name = with_values(token.text)
+        if name not in built and not is_open(name):
+            kind = _built_kind(statement.name, commands)
+            yield Fact(kind, name, span=source.span(token.start, token.end), condition=condition)
+
+
+def _built_kind(command: str, commands: Sequence[Command]) -> FactKind:
+    """Return the kind of the targets of a command: in ROS 1, they can be used although they are not installed."""
+    if not any(each.name in ("catkin_package", "rosbuild_init") for each in commands):
+        return FactKind.BUILT_TARGET
+    return FactKind.BUILT_EXECUTABLE if command in _EXECUTABLES else FactKind.BUILT_LIBRARY
 
 
 def _stops(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import PurePosixPath
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
 TEMPLATE_SUFFIXES = (".sdf.jinja", ".sdf.jinja2", ".world.jinja", ".sdf.em", ".world.em")
 _STATEMENT = re.compile(r"\{%.*?%\}|\{#.*?#\}|@\[.*?\]@?(?=\s*$)|^\s*@#.*?$", re.DOTALL | re.MULTILINE)
+_SET = re.compile(r"\{%[-+]?\s*set\s+(?P<name>[\w.]+)\s*=(?!=)\s*(?P<value>.*?)\s*[-+]?%\}", re.DOTALL)
+_MACRO = re.compile(r"\{%[-+]?\s*macro\s+(?P<name>\w+)\s*\((?P<parameters>.*)\)\s*[-+]?%\}", re.DOTALL)
+_END_OF_MACRO = re.compile(r"\{%[-+]?\s*endmacro\b[^%]*%\}")
+_ANY_MACRO = re.compile(r"\{%[-+]?\s*macro\b")
 _EXPRESSION = re.compile(r"\{\{(?P<content>.*?)\}\}", re.DOTALL)
+_DECLARATION = re.compile(r"<\?xml\b[^>]*>")
+_STRING = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?P<text>[^\"'\\]*)\"")
 _ESCAPED = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
+_ROOTS = ("sdf", "gazebo")
+"""The tags of the root of a file in SDF; the second one is that of versions before SDF had its name."""
 
 
 def is_template(path: str) -> bool:
@@ -21,18 +31,71 @@ def is_template(path: str) -> bool:
 
 
 def template_elements(file: str) -> list[Element]:
-    """Return the elements of a template in which the statements are left out; expressions stay as texts.
+    """Return the elements of a template; expressions stay as texts.
 
-    The result has the elements of all branches. Lines and columns are those of the file.
+    The result has the elements of all branches. A macro is an element ``<macro name="..." parameters="...">`` around
+    its elements, and a variable that a statement sets is an element ``<set name="...">`` with the value. The other
+    statements and the XML declaration are left out. Lines are those of the file.
 
     Raises:
         LinkwrightError: the template is not XML without its statements, or the file cannot be read.
     """
     text = read_bytes(file).decode("utf-8", errors="replace")
-    text = _STATEMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
-    text = _EXPRESSION.sub(lambda match: f"{{{{{_escaped(match['content'])}}}}}", text)
-    document, _ = parse_as_gazebo(text, file)
-    return list(document.root.elements())
+    text = _EXPRESSION.sub(_escaped_expression, _DECLARATION.sub(_blank, _with_elements(text)))
+    try:
+        roots = list(parse_as_gazebo(f"<template>{text}</template>", file)[0].root.elements())
+    except LinkwrightError:
+        roots = [parse_as_gazebo(text, file)[0].root]
+    return [child for element in roots for child in _without_root(element)]
+
+
+def is_same_name_possible(old: str | None, new: str | None) -> bool:
+    """Return whether a text and an expression that replaces it, or is replaced by it, can have the same value."""
+    return old is not None and new is not None and old.count("{{") != new.count("{{")
+
+
+def _without_root(element: Element) -> Iterator[Element]:
+    yield from element.elements() if element.tag in _ROOTS else (element,)
+
+
+def _with_elements(text: str) -> str:
+    """Return a template with elements instead of its macros and set variables, and without the other statements.
+
+    Statements in tags and comments are left out.
+    """
+    markup = _EXPRESSION.sub(_blank, _STATEMENT.sub(_blank, text))
+    open_macros: list[bool] = []
+
+    def element(match: re.Match[str]) -> str:
+        statement = match[0]
+        is_between_tags = markup.rfind("<", 0, match.start()) <= markup.rfind(">", 0, match.start())
+        result = ""
+        if _END_OF_MACRO.fullmatch(statement):
+            result = "</macro>" if open_macros and open_macros.pop() else ""
+        elif _ANY_MACRO.match(statement):
+            macro = _MACRO.fullmatch(statement) if is_between_tags else None
+            open_macros.append(macro is not None)
+            if macro is not None:
+                parameters = _escaped(_with_single_quotes(" ".join(macro["parameters"].split())))
+                result = f'<macro name="{macro["name"]}" parameters="{parameters}">'
+        elif is_between_tags and (variable := _SET.fullmatch(statement)):
+            result = f'<set name="{variable["name"]}">{_escaped(_with_single_quotes(variable["value"]))}</set>'
+        return result + "\n" * (statement.count("\n") - result.count("\n")) if result else _blank(match)
+
+    return _STATEMENT.sub(element, text)
+
+
+def _with_single_quotes(expression: str) -> str:
+    """Return an expression in which the kind of quotes around texts makes no difference."""
+    return _STRING.sub(lambda match: match[0] if match["text"] is None else f"'{match['text']}'", expression)
+
+
+def _blank(match: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", match[0])
+
+
+def _escaped_expression(match: re.Match[str]) -> str:
+    return f"{{{{{_escaped(_with_single_quotes(match['content']))}}}}}"
 
 
 def _escaped(text: str) -> str:

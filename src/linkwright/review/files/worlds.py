@@ -23,7 +23,7 @@ from linkwright.review.files.sdf_numbers import (
     without_rounding,
     without_same_values,
 )
-from linkwright.review.files.templates import is_template, template_elements
+from linkwright.review.files.templates import is_same_name_possible, is_template, template_elements
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
 from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
@@ -36,6 +36,8 @@ _NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|fra
 """The path of an element whose name programs and other models use."""
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
+_SET_VARIABLE = re.compile(r"(?:^|.* )set [\w.]+(?: \d+)?")
+"""The path of a variable that a template sets; its name does not determine how the value is used."""
 _UNSEEN = frozenset(
     {"collision", "inertial", "plugin", "sensor", "physics", "axis", "light", "gravity", "scene", "gui", "static"}
 )
@@ -203,6 +205,9 @@ def _sentence(difference: Difference, name: str) -> Phrase:
 def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
     """Return why a difference breaks programs that use the world, or None if it does not."""
     path = f"{difference.name} {difference.property}".strip()
+    is_macro = difference.element is not None and difference.element.tag == "macro"
+    if is_macro or _SET_VARIABLE.fullmatch(path) or is_same_name_possible(difference.old, difference.new):
+        return None
     named = _NAMED.fullmatch(path_of_renamed(difference, path) or (path if is_removed(difference) else ""))
     if named is not None and not (named["tag"] == "include" and "/" in named["name"]):
         return _name_reason(named["tag"], named["name"])
