@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
@@ -19,6 +19,8 @@ _COMPARING = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command whose program is searched explicitly. The search is left out of the text, as commands always do it."""
+_QUOTED = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
+"""An expression that is only a text in quotes."""
 _OTHER_TYPES = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
@@ -242,13 +244,14 @@ class ExpressionTexts:
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
-            return "/".join(map(part, self._pieces(first) if function != "join" else arguments))
+            pieces = arguments if function == "join" else self._pieces(first)
+            return _joined_path(["".join(map(part, self._pieces(piece))) for piece in pieces])
         if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):
             return part(first)
         if function == "EnvironmentVariable":
             return f"$(env {' '.join(part(argument) or repr('') for argument in arguments)})"
         if function == "PythonExpression":
-            return f"$(eval {''.join(map(part, self._pieces(first)))})"
+            return _expression_text("".join(map(part, self._pieces(first))))
         if function == "Command":
             command = _PROGRAM.sub(r"\1", "".join(map(part, self._pieces(first))))
             return f"$(command {command})"
@@ -282,6 +285,21 @@ def shortened_text(text: str) -> str:
     if len(text) <= _MAX_LENGTH:
         return text
     return f"{text[:_MAX_LENGTH]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
+
+
+def _expression_text(expression: str) -> str:
+    """Return an expression of Python. A text in quotes is the text, also if it contains substitutions."""
+    quoted = _QUOTED.fullmatch(expression)
+    return f"$(eval {expression})" if quoted is None else quoted["text"]
+
+
+def _joined_path(parts: Sequence[str]) -> str:
+    """Return the path that ``os.path.join`` makes of its parts."""
+    path = ""
+    for part in parts:
+        separator = "" if not path or path.endswith("/") else "/"
+        path = part if part.startswith("/") else f"{path}{separator}{part}"
+    return path
 
 
 def _arguments(node: ast.Call) -> list[ast.expr]:
