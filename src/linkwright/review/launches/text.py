@@ -57,7 +57,8 @@ class ExpressionTexts:
         self._python = python
         self._bindings = bindings or {}
         self._values = values or {}
-        self._texts: dict[int, str] = {}
+        self._texts: dict[int, tuple[ast.expr, str]] = {}
+        """The texts by the identity of the expression, which exists as long as its text."""
 
     def with_item(self, target: ast.expr, item: BoundExpression) -> ExpressionTexts | None:
         """Return the texts with an item for the variables of a loop, or None if they do not fit."""
@@ -81,11 +82,32 @@ class ExpressionTexts:
         return bound or BoundExpression(self, node)
 
     def items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return the items of a list, or None if it is not written in the file."""
+        """Return the items of a list or dictionary, or None if it is not written in the file."""
         value = self.value(node)
+        items = value.texts.dictionary_items(value.node)
+        if items is not None:
+            return items
         if not isinstance(value.node, (ast.List, ast.Tuple)):
             return None
         return [value.texts.value(item) for item in value.node.elts]
+
+    def dictionary_items(self, node: ast.expr) -> list[BoundExpression] | None:
+        """Return what a loop over a dictionary, or over its items, keys or values, gets; None for other expressions."""
+        view = "keys"
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and not node.args:
+            method = node.func
+            node, view = method.value, method.attr
+        owner = self.value(node)
+        if not isinstance(owner.node, ast.Dict) or view not in ("items", "keys", "values"):
+            return None
+        items: list[BoundExpression] = []
+        for key, value in zip(owner.node.keys, owner.node.values, strict=True):
+            if key is None:
+                return None
+            pair = ast.Tuple([key, value], ast.Load())
+            item = {"items": pair, "keys": key, "values": value}[view]
+            items.append(owner.texts.value(item))
+        return items
 
     def list_parts(self, node: ast.expr) -> list[BoundExpression]:
         """Return the items of a list, also of sums of lists and of lists in lists (``*items``).
@@ -111,8 +133,8 @@ class ExpressionTexts:
             return shortened_text(" ".join(ast.unparse(node).split()))
         known = self._texts.get(id(node))
         if known is None:
-            known = self._texts[id(node)] = shortened_text(self._text(node, depth))
-        return known
+            known = self._texts[id(node)] = node, shortened_text(self._text(node, depth))
+        return known[1]
 
     def joined_text(self, node: ast.expr) -> str:
         """Return an expression as text. A list of substitutions is one text."""
@@ -150,8 +172,13 @@ class ExpressionTexts:
         """
         value_text = self.parameter_text if of_parameters else self.joined_text
         node = self._python.resolved(node)
+        if isinstance(node, ast.Call) and called_name(node) == "list" and len(node.args) == 1:
+            node = self._python.resolved(node.args[0])
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
             node = self._python.resolved(node.func.value)
+        bound = self.value(node)
+        if bound.texts is not self:
+            return bound.texts.pairs(bound.node, of_parameters=of_parameters)
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
             return [(keyword.arg or "", value_text(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
