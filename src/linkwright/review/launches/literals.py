@@ -67,7 +67,7 @@ class Literals:
 
 
 class CoveredLiterals:
-    """The parts of the arguments of functions, and of what loops get, that actions show.
+    """The parts that actions show of the arguments of functions and the iterables of loops.
 
     Args:
         python: the file.

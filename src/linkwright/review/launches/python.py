@@ -61,7 +61,7 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
 
 
 def _covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
-    """Return the identities of what evaluated functions and loops get, as far as actions show it."""
+    """Return the identities of the arguments of evaluated functions and the iterables of loops that actions show."""
     if not evaluated:
         return set()
     shown = []
