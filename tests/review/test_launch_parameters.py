@@ -43,3 +43,52 @@ def test_null_is_not_an_empty_text(changes_of):
 def test_empty_text_is_shown_as_one(changes_of):
     text = FILE.format(name="rate")
     assert changes_of("arm.launch", text, "limit: ''", "limit: 1")[0] == ["node 'arm/driver': parameter limit '' -> 1"]
+
+
+SERVER = """<launch>
+  <arg name="robot" default="arm"/>
+  <param name="description_$(arg robot)" value="text"/>
+  <param name="limit" value="1"/>
+  <rosparam file="$(find arm)/config/$(arg robot).yaml" command="load"/>
+  <rosparam file="$(find arm)/config/limits.yaml" command="load"/>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("description_$(arg robot)", "/$(arg robot)/description", "description_arm"),
+        ("limit", "motion/limit", "limit"),
+        ("limit", "limits", "limit"),
+        ("limit", "/limit", ""),
+    ],
+)
+def test_parameter_of_the_server_with_a_new_name_is_renamed(changes_of, old, new, reason):
+    changes, found = changes_of("arm.launch", SERVER, f'name="{old}"', f'name="{new}"')
+    assert changes == [f"parameter '{old}' renamed to '{new}'"]
+    assert found == (changes if reason else [])
+
+
+@pytest.mark.parametrize("new", ['name="speed" value="1"', 'name="motion/limit" value="2"'])
+def test_parameter_of_the_server_with_another_name_or_value_is_another_one(changes_of, new):
+    changes, found = changes_of("arm.launch", SERVER, 'name="limit" value="1"', new)
+    assert len(changes) == 2
+    assert not found
+
+
+def test_old_name_that_another_parameter_has_is_not_gone(changes_of):
+    line = '<param name="limit" value="1"/>'
+    changes, found = changes_of("arm.launch", SERVER, line, f'{line}<param name="/a/limit" value="1"/>')
+    assert changes == ["parameter '/a/limit' added: 1"]
+    assert not found
+
+
+@pytest.mark.parametrize(("new", "is_replaced"), [("config/left.yaml", True), ("other/left.yaml", False)])
+def test_file_that_an_argument_chooses_is_replaced_by_a_fixed_one(changes_of, new, is_replaced):
+    changes, _ = changes_of("arm.launch", SERVER, "config/$(arg robot).yaml", new)
+    text = (
+        "parameters of '$(find arm)/config/$(arg robot).yaml' replaced by parameters of '$(find arm)/config/left.yaml'"
+    )
+    assert (text in changes) == is_replaced
+    assert any(change.endswith("removed") for change in changes) != is_replaced

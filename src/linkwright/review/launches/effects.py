@@ -50,6 +50,8 @@ _NAMES_OF_PROGRAMS = {
 _TRUTH = ("true", "false")
 _CODE = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
+_EXPRESSION = "$(eval "
+"""The beginning of an expression, whose value is unknown."""
 _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
 _PUBLISHED_TOPIC = re.compile(
@@ -195,8 +197,10 @@ def setting_reason(
         return _renaming_reason(old, new, old_outline, new_outline)
     if setting == "arguments":
         old_names = _names_in(entry, old, old_outline)
-        gone = [name for name in old_names if name not in _names_in(entry, new, new_outline)]
-        return _served_reason(entry, gone, new_outline) if gone else None
+        new_names = _names_in(entry, new, new_outline)
+        gone = [name for name in old_names if name not in new_names]
+        is_unknown = any(_EXPRESSION in name for name in new_names)
+        return _served_reason(entry, gone, new_outline) if gone and not is_unknown else None
     return _parameter_reason(setting, old, new, old_outline, new_outline)
 
 

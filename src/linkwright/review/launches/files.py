@@ -9,12 +9,13 @@ from difflib import SequenceMatcher
 
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.breaking import name_reason
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.included import IncludedActions, callers_of, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
-from linkwright.review.launches.outlines import READING, CodePart, Entry, LaunchOutline
+from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.readers_of_environment import reader_of
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renames import renamed_entry, renamed_names, with_new_names
@@ -65,8 +66,7 @@ def compare_launch_files(pair: FilePair) -> None:
     }
     replaced = replacements(gone, come, new_paths)
     for old_entry, new_entry in replaced:
-        text = phrase("{old} replaced by {new}", old=title(renamed_entry(old_entry, old_names)), new=title(new_entry))
-        pair.add(text, pair.location(new_entry.span))
+        _add_replaced(pair, renamed_entry(old_entry, old_names), new_entry, outlines)
         settings.compare(old_entry, new_entry)
         choices.compare(old_entry, new_entry)
     settings.add_groups()
@@ -86,6 +86,19 @@ def compare_launch_files(pair: FilePair) -> None:
         _add_lone_entries(pair, gone, come, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
+
+
+def _add_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
+    """Add an action that replaces another one, or a parameter with a new name."""
+    location = pair.location(new_entry.span)
+    if old_entry.kind != SERVER_PARAMETER:
+        pair.add(phrase("{old} replaced by {new}", old=title(old_entry), new=title(new_entry)), location)
+        return
+    old, new = outlines
+    text = phrase("{entry} renamed to '{name}'", entry=title(old_entry), name=new_entry.name)
+    name = old.resolved(old_entry.name)
+    names = {new.resolved(entry.name).strip("/") for entry in new.entries if entry.kind == SERVER_PARAMETER}
+    pair.add(text, location, None if name.strip("/") in names else name_reason(name))
 
 
 def _add_lone_entries(

@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
-from linkwright.review.launches.outlines import Entry
+from linkwright.review.launches.outlines import SERVER_PARAMETER, Entry
 from linkwright.review.launches.titles import served_names
 
 MIN_SIMILARITY = 0.5
 _MIN_SIMILARITY_OF_PROGRAMS = 0.75
 _MIN_SIMILARITY_OF_FILES = 0.6
 _SEPARATORS = re.compile(r"[\W_]+|node")
+_VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for the version that does not have it."""
@@ -51,10 +52,13 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
         return 0.0
     if old.kind == "environment":
         return float(old.settings == new.settings)
+    if old.kind == SERVER_PARAMETER:
+        return _parameter_score(old, new)
     similarity = _similarity(old, new)
     if old.kind in ("include", "parameters"):
         old_name = PurePosixPath(old.name).name
         is_same = launch_file_key(new_names.get(old_name, old_name)) == launch_file_key(new.name)
+        is_same = is_same or (old.kind == "parameters" and _chooses_file(old.name, new.name))
         likeness = SequenceMatcher(None, launch_file_key(old.name), launch_file_key(new.name), autojunk=False).ratio()
         if likeness < _MIN_SIMILARITY_OF_FILES and not is_same:
             return 0.0
@@ -74,6 +78,32 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
     is_renamed = all(a == b or name_likeness(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in others)
     is_like = likeness >= _MIN_SIMILARITY_OF_PROGRAMS and (similarity >= MIN_SIMILARITY or likeness == 1.0)
     return likeness + similarity if is_like and is_renamed else 0.0
+
+
+def _parameter_score(old: Entry, new: Entry) -> float:
+    """Return a score for the certainty that a parameter of the server has a new name; 0 if it is another one.
+
+    Many parameters have values such as ``true``, so that an equal value alone is not enough.
+    """
+    if old.settings != new.settings:
+        return 0.0
+    if f"/{old.name}".endswith(f"/{new.name}") or f"/{new.name}".endswith(f"/{old.name}"):
+        return 3.0  # another namespace
+    old_words, new_words = (sorted(filter(None, _SEPARATORS.split(entry.name))) for entry in (old, new))
+    likeness = name_likeness(old.name, new.name)
+    if old_words == new_words:
+        return 2.0
+    return likeness if likeness >= _MIN_SIMILARITY_OF_PROGRAMS else 0.0
+
+
+def _chooses_file(path: str, fixed: str) -> bool:
+    """Return whether arguments choose a file in a path, and the other path is one of the files in its folder."""
+    folder, _, name = path.rpartition("/")
+    fixed_folder, _, fixed_name = fixed.rpartition("/")
+    pieces = _VARIABLE.split(name)
+    if folder != fixed_folder or len(pieces) == 1 or "$(" in fixed_name:
+        return False
+    return re.fullmatch(".+".join(map(re.escape, pieces)), fixed_name) is not None
 
 
 def name_likeness(old: str, new: str) -> float:

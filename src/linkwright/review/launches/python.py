@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions
+from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.outlines import (
     CONDITION,
     PARAMETER,
@@ -55,7 +56,27 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     reader = _Reader(python, helpers, ExpressionTexts(python))
     reader.visit(python.tree)
     entries = sorted(reader.entries(), key=lambda entry: (entry.span.line, entry.span.column))
-    return LaunchOutline(entries, rest_of(python, reader.covered, reader.branches), definitions_of(python))
+    covered = reader.covered | _covered_literals(python, helpers, reader.evaluated)
+    return LaunchOutline(entries, rest_of(python, covered, reader.branches), definitions_of(python))
+
+
+def _covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
+    """Return the identities of the arguments of evaluated functions and the iterables of loops that actions show."""
+    if not evaluated:
+        return set()
+    shown = []
+    for with_keys in (False, True):
+        literals = Literals(python, with_keys=with_keys)
+        reader = _Reader(python, helpers, ExpressionTexts(python), literals=literals)
+        reader.visit(python.tree)
+        shown.append(literals.shown(reader.entries()))
+    parts = CoveredLiterals(python, *shown)
+    for node in evaluated:
+        if isinstance(node, ast.Call) and helpers.find(python, node) is not None:
+            parts.add_call(node)
+        else:
+            parts.add(node)
+    return parts.covered
 
 
 @dataclass
@@ -72,6 +93,8 @@ class _Reader:
             the passes of the loops around it.
         covered: the calls that entries describe, which do not belong to the rest of the file.
         branches: the ``if`` statements whose conditions actions have.
+        evaluated: the calls of functions that are read, and what loops get that are read for each item.
+        literals: the marks in place of the literals of the file; None to read the literals themselves.
     """
 
     python: PythonFile
@@ -82,6 +105,8 @@ class _Reader:
     scopes: dict[_Place, tuple[ast.Call, Scope, ExpressionTexts]] = field(default_factory=dict)
     covered: set[int] = field(default_factory=set)
     branches: set[int] = field(default_factory=set)
+    evaluated: list[ast.expr] = field(default_factory=list)
+    literals: Literals | None = None
     _loops: tuple[int, ...] = ()
     _outside: list[tuple[int, int, ExpressionTexts, tuple[int, ...]]] = field(default_factory=list)
     _seen: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
@@ -151,13 +176,13 @@ class _Reader:
         self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
     ) -> None:
         """Find the actions of a loop, for each item if the list is written in the file."""
-        items = self.texts.items(iterable)
+        items = self.texts.items(self._marked(iterable))
         passes = [self.texts.with_item(target, item) for item in items or ()]
         if items is None or None in passes or not self.helpers.take_passes(len(items)):
             for statement in body:
                 self.visit(statement, scope)
             return
-        self.covered.add(id(iterable))
+        self.evaluated.append(iterable)
         texts, loops = self.texts, self._loops
         lines = [line for node in body for line in (node.lineno, node.end_lineno or node.lineno)]
         self._outside.append((min(lines), max(lines), texts, loops))
@@ -259,11 +284,15 @@ class _Reader:
         reader = _Reader(function.python, self.helpers, texts, extra, self.depth + 1)
         if function.python is self.python:
             reader.covered, reader.branches = self.covered, self.branches
+            reader.evaluated, reader.literals = self.evaluated, self.literals
         reader.visit_function(function.node)
         span = self.python.span(call)
-        self.covered.add(id(call))
+        self.evaluated.append(call)
         for entry in reader.entries():
             yield replace(entry, span=span, settings=scope.settings(entry.kind, entry.settings))
+
+    def _marked(self, node: ast.expr) -> ast.expr:
+        return node if self.literals is None else self.literals.marked(node)
 
     def _arguments(
         self, call: ast.Call, function: Function
@@ -278,20 +307,22 @@ class _Reader:
         bindings = {name: outer_texts.text(value) for name, value in defaults.items()}
         if function.is_method:
             names = names[1:]
-        given = dict(zip(names, call.args, strict=False))
+        given = dict(zip(names, map(self._marked, call.args), strict=False))
         bindings |= {name: self.texts.text(value) for name, value in given.items()}
         extra: dict[str, BoundExpression] = {}
         known = {*names, *(argument.arg for argument in arguments.kwonlyargs)}
         for keyword in call.keywords:
+            value = self._marked(keyword.value)
             if keyword.arg is None:
                 extra |= self.extra
             elif keyword.arg not in known:
-                extra[keyword.arg] = self.texts.value(keyword.value)
+                extra[keyword.arg] = self.texts.value(value)
             elif keyword.arg == CONDITION:
-                bindings[keyword.arg] = self.texts.condition(keyword.value)
+                bindings[keyword.arg] = self.texts.condition(value)
+                given[keyword.arg] = value
             else:
-                bindings[keyword.arg] = self.texts.text(keyword.value)
-        given |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg in known}
+                bindings[keyword.arg] = self.texts.text(value)
+                given[keyword.arg] = value
         values = {name: self.texts.value(value) for name, value in given.items()}
         return bindings, values, extra
 

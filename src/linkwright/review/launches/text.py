@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
@@ -19,6 +19,8 @@ _COMPARING = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command whose program is searched explicitly. The search is left out of the text, as commands always do it."""
+_QUOTED = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
+"""An expression that is only a text in quotes."""
 _OTHER_TYPES = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
@@ -55,7 +57,8 @@ class ExpressionTexts:
         self._python = python
         self._bindings = bindings or {}
         self._values = values or {}
-        self._texts: dict[int, str] = {}
+        self._texts: dict[int, tuple[ast.expr, str]] = {}
+        """The texts by the identity of the expression, which exists as long as its text."""
 
     def with_item(self, target: ast.expr, item: BoundExpression) -> ExpressionTexts | None:
         """Return the texts with an item for the variables of a loop, or None if they do not fit."""
@@ -79,11 +82,32 @@ class ExpressionTexts:
         return bound or BoundExpression(self, node)
 
     def items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return the items of a list, or None if it is not written in the file."""
+        """Return the items of a list or dictionary, or None if it is not written in the file."""
         value = self.value(node)
+        items = value.texts.dictionary_items(value.node)
+        if items is not None:
+            return items
         if not isinstance(value.node, (ast.List, ast.Tuple)):
             return None
         return [value.texts.value(item) for item in value.node.elts]
+
+    def dictionary_items(self, node: ast.expr) -> list[BoundExpression] | None:
+        """Return what a loop over a dictionary, or over its items, keys or values, gets; None for other expressions."""
+        view = "keys"
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and not node.args:
+            method = node.func
+            node, view = method.value, method.attr
+        owner = self.value(node)
+        if not isinstance(owner.node, ast.Dict) or view not in ("items", "keys", "values"):
+            return None
+        items: list[BoundExpression] = []
+        for key, value in zip(owner.node.keys, owner.node.values, strict=True):
+            if key is None:
+                return None
+            pair = ast.Tuple([key, value], ast.Load())
+            item = {"items": pair, "keys": key, "values": value}[view]
+            items.append(owner.texts.value(item))
+        return items
 
     def list_parts(self, node: ast.expr) -> list[BoundExpression]:
         """Return the items of a list, also of sums of lists and of lists in lists (``*items``).
@@ -109,8 +133,8 @@ class ExpressionTexts:
             return shortened_text(" ".join(ast.unparse(node).split()))
         known = self._texts.get(id(node))
         if known is None:
-            known = self._texts[id(node)] = shortened_text(self._text(node, depth))
-        return known
+            known = self._texts[id(node)] = node, shortened_text(self._text(node, depth))
+        return known[1]
 
     def joined_text(self, node: ast.expr) -> str:
         """Return an expression as text. A list of substitutions is one text."""
@@ -148,8 +172,13 @@ class ExpressionTexts:
         """
         value_text = self.parameter_text if of_parameters else self.joined_text
         node = self._python.resolved(node)
+        if isinstance(node, ast.Call) and called_name(node) == "list" and len(node.args) == 1:
+            node = self._python.resolved(node.args[0])
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
             node = self._python.resolved(node.func.value)
+        bound = self.value(node)
+        if bound.texts is not self:
+            return bound.texts.pairs(bound.node, of_parameters=of_parameters)
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
             return [(keyword.arg or "", value_text(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
@@ -242,13 +271,14 @@ class ExpressionTexts:
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
-            return "/".join(map(part, self._pieces(first) if function != "join" else arguments))
+            pieces = arguments if function == "join" else self._pieces(first)
+            return _joined_path(["".join(map(part, self._pieces(piece))) for piece in pieces])
         if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):
             return part(first)
         if function == "EnvironmentVariable":
             return f"$(env {' '.join(part(argument) or repr('') for argument in arguments)})"
         if function == "PythonExpression":
-            return f"$(eval {''.join(map(part, self._pieces(first)))})"
+            return _expression_text("".join(map(part, self._pieces(first))))
         if function == "Command":
             command = _PROGRAM.sub(r"\1", "".join(map(part, self._pieces(first))))
             return f"$(command {command})"
@@ -282,6 +312,21 @@ def shortened_text(text: str) -> str:
     if len(text) <= _MAX_LENGTH:
         return text
     return f"{text[:_MAX_LENGTH]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
+
+
+def _expression_text(expression: str) -> str:
+    """Return an expression of Python. A text in quotes is the text, also if it contains substitutions."""
+    quoted = _QUOTED.fullmatch(expression)
+    return f"$(eval {expression})" if quoted is None else quoted["text"]
+
+
+def _joined_path(parts: Sequence[str]) -> str:
+    """Return the path that ``os.path.join`` makes of its parts."""
+    path = ""
+    for part in parts:
+        separator = "" if not path or path.endswith("/") else "/"
+        path = part if part.startswith("/") else f"{path}{separator}{part}"
+    return path
 
 
 def _arguments(node: ast.Call) -> list[ast.expr]:

@@ -1,0 +1,145 @@
+"""The literals that functions and loops of a launch file get, and which of them its actions show."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Iterable
+from copy import copy
+
+from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.launches.outlines import Entry
+
+_MAX_DEPTH = 20
+_VIEWS = ("items", "keys", "values")
+"""The methods of dictionaries whose results loops use."""
+_TEXTS = (ast.Constant, ast.JoinedStr, ast.BinOp, ast.UnaryOp)
+
+
+class Literals:
+    """The literals that functions of the repository and loops get.
+
+    A literal that no action shows, such as a flag or an item of a dictionary that only an ``if`` statement reads,
+    remains a part of the other code. To find these, the file is read once more with a mark in place of each literal.
+
+    Args:
+        python: the file.
+        with_keys: whether the keys of dictionaries get marks, too. The code cannot look up marked keys.
+    """
+
+    def __init__(self, python: PythonFile, *, with_keys: bool) -> None:
+        self._python = python
+        self._with_keys = with_keys
+        self._copies: dict[int, tuple[ast.expr, ast.expr]] = {}
+
+    def marked(self, node: ast.expr) -> ast.expr:
+        """Return an expression with marks in place of its literals."""
+        return self._marked(node, 0)
+
+    def shown(self, entries: Iterable[Entry]) -> set[int]:
+        """Return the identities of the literals whose marks actions have."""
+        texts = [text for entry in entries for text in (entry.name, *entry.settings, *entry.settings.values())]
+        found = "\n".join(texts)
+        return {key for key in self._copies if _mark(key) in found}
+
+    def _marked(self, node: ast.expr, depth: int) -> ast.expr:
+        known = self._copies.get(id(node))
+        if known is None:
+            known = self._copies[id(node)] = node, self._copy(node, depth + 1)
+        return known[1]
+
+    def _copy(self, node: ast.expr, depth: int) -> ast.expr:
+        container = _container(self._python, node)
+        if depth > _MAX_DEPTH or (container is None and not _is_literal(self._python, node)):
+            return node
+        if container is None:
+            return ast.copy_location(ast.Constant(_mark(id(node))), node)
+        changed = copy(container)
+        if isinstance(changed, ast.Dict):
+            changed.values = [self._marked(value, depth) for value in changed.values]
+            if self._with_keys:
+                changed.keys = [None if key is None else self._marked(key, depth) for key in changed.keys]
+        elif isinstance(changed, (ast.List, ast.Tuple)):
+            changed.elts = [self._marked(item, depth) for item in changed.elts]
+        elif isinstance(changed, ast.Call) and isinstance(changed.func, ast.Attribute):
+            changed.func = copy(changed.func)
+            changed.func.value = self._marked(changed.func.value, depth)
+        return changed
+
+
+class CoveredLiterals:
+    """The parts that actions show of the arguments of functions and the iterables of loops.
+
+    Args:
+        python: the file.
+        shown: the identities of the literals that actions show.
+        shown_keys: those of the keys of dictionaries.
+
+    Attributes:
+        covered: the identities of the parts that belong to actions.
+    """
+
+    def __init__(self, python: PythonFile, shown: Collection[int], shown_keys: Collection[int]) -> None:
+        self._python = python
+        self._shown = shown
+        self._shown_keys = shown_keys
+        self._known: dict[int, bool] = {}
+        self.covered: set[int] = set()
+
+    def add_call(self, call: ast.Call) -> None:
+        """Add the arguments of a function, and its call if actions show all of them."""
+        arguments = [self.add(argument) for argument in call.args]
+        for keyword in call.keywords:
+            is_covered = self.add(keyword.value)
+            arguments.append(is_covered)
+            if is_covered:
+                self.covered.add(id(keyword))
+        if all(arguments):
+            self.covered.add(id(call))
+
+    def add(self, node: ast.expr) -> bool:
+        """Add the parts of an expression, and return whether actions show all of them."""
+        known = self._known.get(id(node))
+        if known is None:
+            self._known[id(node)] = True  # a name that is defined by itself
+            known = self._known[id(node)] = self._add(node)
+            if known:
+                self.covered.add(id(node))
+        return known
+
+    def _add(self, node: ast.expr) -> bool:
+        container = _container(self._python, node)
+        if isinstance(container, ast.Dict):
+            items = [self._add_item(*item) for item in zip(container.keys, container.values, strict=True)]
+            return all(items)
+        if isinstance(container, (ast.List, ast.Tuple)):
+            items = [self.add(item) for item in container.elts]
+            return all(items)
+        if isinstance(container, ast.Call) and isinstance(container.func, ast.Attribute):
+            return self.add(container.func.value)
+        return not _is_literal(self._python, node) or id(node) in self._shown
+
+    def _add_item(self, key: ast.expr | None, value: ast.expr) -> bool:
+        """Add an item of a dictionary. The key of a value that no action shows is part of the other code, too."""
+        is_covered = self.add(value)
+        if is_covered and key is not None and (id(key) in self._shown_keys or not _is_literal(self._python, key)):
+            self.covered.add(id(key))
+            return True
+        return is_covered and key is None
+
+
+def _container(python: PythonFile, node: ast.expr) -> ast.expr | None:
+    """Return the dictionary or list that an expression is, or the view of a dictionary; None for others."""
+    node = python.resolved(node)
+    if isinstance(node, ast.Call):
+        is_view = isinstance(node.func, ast.Attribute) and node.func.attr in _VIEWS and not node.args
+        return node if is_view else None
+    return node if isinstance(node, (ast.Dict, ast.List, ast.Tuple)) else None
+
+
+def _is_literal(python: PythonFile, node: ast.expr) -> bool:
+    value = python.resolved(node)
+    return isinstance(value, _TEXTS) and not (isinstance(value, ast.Constant) and value.value is None)
+
+
+def _mark(key: int) -> str:
+    return f"\x01{key}\x01"

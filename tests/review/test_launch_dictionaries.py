@@ -1,0 +1,83 @@
+"""Dictionaries and flags that launch files in Python pass to functions of the repository, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import sentences
+
+FUNCTION = """from launch.actions import IncludeLaunchDescription
+from launch_ros.actions import Node
+
+
+def make(config, mode="none"):
+    actions = []
+    if mode == "debug":
+        actions.append(Node(package="arm", executable="viewer"))
+    for name, args in config.items():
+{rest}
+    return actions
+"""
+EVALUATED = (
+    """        actions.append(IncludeLaunchDescription(name + ".launch.py", launch_arguments=list(args.items())))"""
+)
+UNKNOWN = """        values = list(args.items())
+        values += [("mode", mode)]
+        actions.append(IncludeLaunchDescription(name + ".launch.py", launch_arguments=values))"""
+FILE = """from arm.make import make
+from launch import LaunchDescription
+
+IDS = "left right"
+
+
+def generate_launch_description():
+    return LaunchDescription(make({
+        "slam": {"datum": "1.0", "ids": IDS},
+        "nav": {"ids": IDS},
+    }, mode="none"))
+"""
+TAGS = """        "tags": {"size": "0.2"},
+"""
+
+
+@pytest.fixture
+def changes(repository, compare):
+    """Review a replacement in a launch file, and return its changes."""
+
+    def run(body: str, old: str, new: str):
+        assert old in FILE
+        function = FUNCTION.format(rest=body)
+        repository.commit({"arm/launch/arm.launch.py": FILE, "arm/arm/make.py": function, "arm/arm/__init__.py": ""})
+        repository.write({"arm/launch/arm.launch.py": FILE.replace(old, new)})
+        return [text for each in compare(repository).subjects for text in sentences(each)]
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"1.0"', '"2.0"', ["include of 'slam.launch.py': datum 1.0 -> 2.0"]),
+        ('        "nav"', f'{TAGS}        "nav"', ["include of 'tags.launch.py' added: size 0.2"]),
+        ('"nav": {', '"nav": {"deep": "true", ', ["include of 'nav.launch.py': deep true added"]),
+    ],
+)
+def test_loop_over_a_dictionary_is_read_for_each_item(changes, old, new, expected):
+    assert changes(EVALUATED, old, new) == expected
+
+
+@pytest.mark.parametrize("body", [EVALUATED, UNKNOWN])
+def test_flag_that_no_action_shows_is_other_code(changes, body):
+    (change,) = changes(body, 'mode="none"', 'mode="debug"')
+    assert change.startswith("other code: ")
+    assert "debug" in change
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "value"),
+    [('"1.0"', '"2.0"', "'2.0'"), ('{"ids": IDS},', '{"ids": IDS, "size": "3"},', "'size': '3'")],
+)
+def test_item_that_no_action_shows_is_other_code(changes, old, new, value):
+    (change,) = changes(UNKNOWN, old, new)
+    assert change.startswith("other code: ")
+    assert value in change

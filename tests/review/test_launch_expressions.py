@@ -1,0 +1,50 @@
+"""Substitutions of launch files in Python that by default are the same text as before, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+FILE = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, PythonExpression
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    robot = LaunchConfiguration("robot")
+    return LaunchDescription([
+        DeclareLaunchArgument("robot", default_value="arm"),
+        Node(package="controller_manager", executable="spawner", arguments=["arm_controller"]),
+        Node(package="arm", executable="driver", parameters=[
+            PathJoinSubstitution([FindPackageShare("arm"), "config/arm.yaml"]),
+        ]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("expression", "text", "is_breaking"),
+    [
+        ("""PythonExpression(["'", robot, "_controller'"])""", "$(var robot)_controller", False),
+        ("""PythonExpression(["'", robot, "_hand'"])""", "$(var robot)_hand", True),
+        ("""PythonExpression(["'", robot, "' + '_controller'"])""", "$(eval '$(var robot)' + '_controller')", False),
+    ],
+)
+def test_expression_of_a_text_in_quotes_is_the_text(changes_of, expression, text, is_breaking):
+    _, found = changes_of("arm.launch.py", FILE, '"arm_controller"', expression)
+    title = f"node 'controller_manager/spawner' of '{text}'"
+    assert found == ([f"{title}: arguments [arm_controller] -> [{text}]"] if is_breaking else [])
+
+
+@pytest.mark.parametrize("start", ['"config/"', '"config"'])
+def test_joined_path_has_one_slash(changes_of, start):
+    changes, _ = changes_of("arm.launch.py", FILE, '"config/arm.yaml"', f'{start}, [robot, ".yaml"]')
+    file = "$(find-pkg-share arm)/config/$(var robot).yaml"
+    assert any(file in change for change in changes), changes
+    assert not any("//" in change for change in changes)
+
+
+def test_later_absolute_path_replaces_those_before_it(changes_of):
+    changes, _ = changes_of("arm.launch.py", FILE, '"config/arm.yaml"', '"/etc/arm.yaml"')
+    assert changes == ["node 'arm/driver': parameters [$(find-pkg-share arm)/config/arm.yaml] -> [/etc/arm.yaml]"]
