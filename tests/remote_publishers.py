@@ -1,4 +1,4 @@
-"""Simulated publishers of other processes: a test sends their messages, closes them, and loses them."""
+"""Simulated publishers of other processes: a test sends their messages and makes them disappear."""
 
 from __future__ import annotations
 

@@ -233,9 +233,7 @@ class TestLaunches:
 
     def test_demo_launch_file_declares_arguments(self, write: Any) -> None:
         files = self.files(write)
-        names = {
-            get_launch_argument.name for get_launch_argument in load_launch_file(files["demo"]).get_launch_arguments()
-        }
+        names = {argument.name for argument in load_launch_file(files["demo"]).get_launch_arguments()}
         assert {"db", "debug", "use_rviz", "publish_frequency", "rviz_config", "capabilities"} <= names
 
     def test_spawner_and_virtual_joint_launches_start_nodes(self, write: Any) -> None:

@@ -36,7 +36,7 @@ def test_transformed_cloud_keeps_other_fields(turned):
     moved = do_transform_cloud(cloud, turned)
     assert moved.header.frame_id == "base"
     assert (moved.width, moved.point_step, list(moved.fields)) == (2, 16, fields)
-    points = [list(read_point) for read_point in point_cloud2.read_points(moved)]
+    points = [list(point) for point in point_cloud2.read_points(moved)]
     np.testing.assert_allclose(points, [[1, 1, 0, 7], [1, 0, 2, 8]], atol=1e-6)
 
 
@@ -46,6 +46,4 @@ def test_buffer_transforms_clouds(turned, monkeypatch):
     buffer.set_transform_static(turned, "test")
     cloud = point_cloud2.create_cloud_xyz32(Header(frame_id="lidar"), [(1.0, 0.0, 0.0)])
     moved = buffer.transform(cloud, "base", rclpy.duration.Duration(seconds=0))
-    np.testing.assert_allclose(
-        [list(read_point) for read_point in point_cloud2.read_points(moved)], [[1, 1, 0]], atol=1e-6
-    )
+    np.testing.assert_allclose([list(point) for point in point_cloud2.read_points(moved)], [[1, 1, 0]], atol=1e-6)

@@ -172,8 +172,7 @@ def test_metadata_is_written_and_read(tmp_path):
 def test_message_definitions_are_returned(tmp_path):
     write(tmp_path / "bag")
     definitions = {
-        get_all_message_definition.topic_type: get_all_message_definition
-        for get_all_message_definition in opened(tmp_path / "bag").get_all_message_definitions()
+        definition.topic_type: definition for definition in opened(tmp_path / "bag").get_all_message_definitions()
     }
     local = rosbag2_py.LocalMessageDefinitionSource()
     assert definitions["std_msgs/msg/Int32"] == local.get_full_text("std_msgs/msg/Int32")

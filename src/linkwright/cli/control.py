@@ -386,8 +386,8 @@ VERBS = {
 
 
 def _with_state(arguments: argparse.Namespace, state: str) -> argparse.Namespace:
-    arguments.state = state
-    return arguments
+    """Return a copy of arguments with a state."""
+    return argparse.Namespace(**vars(arguments) | {"state": state})
 
 
 configure = partial(configure_nested, verbs=VERBS)

@@ -156,7 +156,7 @@ def _readable_config(rviz: Path) -> Path:
     """Return the absolute path of a .rviz file after checking that it can be read.
 
     Raises:
-        LinkwrightError: the file cannot be read; see `linkwright.viewer.RvizConfig.load`.
+        LinkwrightError: the file cannot be read; see `linkwright.rviz.RvizConfig.load`.
     """
     from linkwright.rviz import RvizConfig
 

@@ -161,9 +161,9 @@ class PythonLaunchText:
             return _StringMeaning("topic", text, programs=programs, excluded_names=remapped_names)
         if group.opening == "{" and _is_in_list_named(outer, _PARAMETERS):
             names = (sibling.parts[0] for sibling in group.items if sibling is not item and sibling.parts)
-            remapped_names = frozenset(part.value for part in names if isinstance(part, Text))
+            parameter_names = frozenset(part.value for part in names if isinstance(part, Text))
             return _StringMeaning(
-                "parameter", text, programs=self._list_programs(outer, "parameters"), excluded_names=remapped_names
+                "parameter", text, programs=self._list_programs(outer, "parameters"), excluded_names=parameter_names
             )
         return None
 

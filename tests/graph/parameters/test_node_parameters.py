@@ -32,7 +32,7 @@ async def test_declared_parameters_use_default_or_override(graph):
     assert node.declare_parameter("zeros.arm.elbow", 0.0).value == 1.5
     assert node.get_parameter("frame").type_ is ParameterType.STRING
     assert node.parameter_names() == ["use_sim_time", "rate", "frame", "zeros.arm.elbow"]
-    assert [get_parameter.value for get_parameter in node.get_parameters(["frame", "rate"])] == ["map", 50]
+    assert [parameter.value for parameter in node.get_parameters(["frame", "rate"])] == ["map", 50]
     assert node.has_parameter("rate")
     assert not node.has_parameter("arm")
     assert node.declare_parameter("other", 1, ignore_override=True).value == 1
@@ -276,7 +276,7 @@ async def test_descriptors_are_returned_and_replaced(graph):
     node = graph.create_node("node")
     node.declare_parameter("p", 5, ParameterDescriptor(description="how many"))
     assert node.describe_parameter("p") == DescriptorMessage(name="p", type=2, description="how many")
-    assert [describe_parameter.name for describe_parameter in node.describe_parameters(["p", "use_sim_time"])] == [
+    assert [descriptor.name for descriptor in node.describe_parameters(["p", "use_sim_time"])] == [
         "p",
         "use_sim_time",
     ]

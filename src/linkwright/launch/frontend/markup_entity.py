@@ -59,7 +59,7 @@ class MarkupEntity(Entity):
             return
         name = unread_names[0]
         names_text = ", ".join(repr(str(unread_name)) for unread_name in unread_names)
-        known_names = [read_name for read_name in self._read_names if read_name not in unread_names]
+        known_names = [name for name in self._read_names if name not in unread_names]
         hint = did_you_mean(name, known_names)
         if hint is None and known_names:
             hint = phrase(
