@@ -292,6 +292,13 @@ def test_interface_changes_are_reported(repository, compare, old, new, sentence,
     assert (breaking(result) == [sentence]) is is_breaking
 
 
+def test_added_constant_is_breaking_in_ros_1(repository, compare):
+    manifest = "<package><name>m</name><buildtool_depend>catkin</buildtool_depend></package>"
+    repository.commit({"m/package.xml": manifest, "m/srv/Set.srv": "uint8 FAST=1\nuint8 mode\n---\n"})
+    repository.write({"m/srv/Set.srv": "uint8 FAST=1\nuint8 SLOW=2\nuint8 mode\n---\n"})
+    assert breaking(compare(repository)) == ["constant 'request SLOW' = 2 added"]
+
+
 def test_renumbered_constants_are_one_change(repository, compare):
     text = "uint8 OFF=0\nuint8 ON=1\nuint8 FAULT=2\nuint8 UNKNOWN=3\nuint8 state\n"
     repository.commit({"m/msg/State.msg": text})

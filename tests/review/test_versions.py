@@ -191,6 +191,17 @@ def test_links_whose_names_are_not_utf8_are_not_followed(package, compare, tmp_p
     ]
 
 
+@pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
+def test_symlinks_out_of_repository_are_one_note(package, compare, tmp_path):
+    for number in range(3):
+        (package.root / f"arm_description/urdf/link_{number}.xacro").symlink_to(tmp_path / "other.xacro")
+    package.commit({})
+    package.git("switch", "--quiet", "--detach", "HEAD~1")
+    assert [str(note) for note in compare(package, "main~1..main").notes] == [
+        "3 symbolic links, such as 'arm_description/urdf/link_0.xacro', point outside the repository and are ignored"
+    ]
+
+
 def test_submodule_change_is_a_note(package, compare, tmp_path):
     other = Repository(tmp_path / "other")
     other.commit({"a.urdf": "<robot name='a'><link name='a'/></robot>"})

@@ -319,8 +319,14 @@ class _Reviewer:
         for version in (self._versions.old, self._versions.new):
             if version.commit is None:
                 continue
-            for link in version.commit.removed_links:
-                yield phrase("symbolic link '{path}' points outside the repository and is ignored", path=link)
+            links = version.commit.removed_links
+            if links:
+                yield counted(
+                    "symbolic link '{path}' points outside the repository and is ignored",
+                    "{count} symbolic links, such as '{path}', point outside the repository and are ignored",
+                    len(links),
+                    path=links[0],
+                )
             if version.commit.missing_files:
                 yield counted(
                     "git cannot check out one file of '{version}', such as '{path}'",

@@ -29,16 +29,17 @@ def compare_interfaces(pair: FilePair) -> None:
     """Compare two versions of the definition of a message, service or action.
 
     A change of a field is breaking: the type gets another hash (REP 2016), and nodes that were built with different
-    versions do not exchange messages.
+    versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type.
     """
     definitions = pair.read(_read)
     if definitions is None:
         return
     old, new = map(structures_of, definitions)
+    is_ros1 = _is_ros1(pair.new_file)
     for index, (old_part, new_part, name) in enumerate(zip(old, new, _PARTS[len(new)], strict=True)):
         places = _Places(pair, index)
         _compare_fields(pair, old_part.fields, new_part.fields, name, places)
-        _compare_constants(pair, old_part.constants, new_part.constants, name, places)
+        _compare_constants(pair, old_part.constants, new_part.constants, name, places, is_ros1=is_ros1)
 
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
@@ -57,11 +58,18 @@ def _read(file: Path) -> Definition:
     package = enclosing_package(file.parent)
     kind = file.parent.name if file.suffix == ".idl" else file.suffix.removeprefix(".")
     name = package[0] if package else file.parent.name
-    is_ros1 = package is not None and Manifest(read_document(str(package[1] / MANIFEST))).is_ros1
     if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
-        name, is_ros1 = file.parent.parent.name, True
+        name = file.parent.parent.name
     type_name = f"{name}/{kind}/{file.stem}"
-    return parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=is_ros1)
+    return parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=_is_ros1(file))
+
+
+def _is_ros1(file: Path) -> bool:
+    """Return whether the package of an interface is one of ROS 1."""
+    package = enclosing_package(file.parent)
+    if package is None:
+        return (file.parent.parent / ROSBUILD_MANIFEST).is_file()
+    return Manifest(read_document(str(package[1] / MANIFEST))).is_ros1
 
 
 class _Places:
@@ -99,7 +107,7 @@ def _lines(file: Path, index: int) -> list[tuple[int, str]]:
 
 
 def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], part: str, places: _Places) -> None:
-    reason = phrase("nodes that were built with the old type do not exchange messages with new ones")
+    reason = _exchange_reason()
     old_fields, new_fields = ({field.name: field for field in fields} for fields in (old, new))
     for name in dict.fromkeys([*new_fields, *old_fields]):
         before, after = old_fields.get(name), new_fields.get(name)
@@ -130,13 +138,18 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
         pair.add(phrase("order of the fields changed"), places.of(common[0]), reason)
 
 
+def _exchange_reason() -> Phrase:
+    return phrase("nodes that were built with the old type do not exchange messages with new ones")
+
+
 def _compare_constants(
-    pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, places: _Places
+    pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, places: _Places, *, is_ros1: bool
 ) -> None:
     old_values, new_values = ({constant.name: constant.value for constant in constants} for constants in (old, new))
     for name, value in new_values.items():
         if name not in old_values:
-            pair.add(phrase("constant '{name}' = {value} added", name=part + name, value=str(value)), places.of(name))
+            text = phrase("constant '{name}' = {value} added", name=part + name, value=str(value))
+            pair.add(text, places.of(name), _exchange_reason() if is_ros1 else None)
     for name in old_values:
         if name not in new_values:
             reason = phrase("programs that use the constant do not build or start")

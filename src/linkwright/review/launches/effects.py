@@ -74,6 +74,8 @@ _INPUTS = re.compile(
     r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
 )
 """The topics to which those programs subscribe. They publish others."""
+_ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
+"""The environment variables that every shell sets."""
 
 
 def removal_reason(
@@ -134,7 +136,7 @@ def addition_reason(entry: Entry) -> Phrase | None:
     """Return why adding a launch action is a breaking change, or None if it is not."""
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _required_reason(entry)
-    if entry.kind == READING and not entry.settings:
+    if entry.kind == READING and not entry.settings and entry.name not in _ALWAYS_SET:
         return phrase("the launch file fails where '{name}' is not set", name=entry.name)
     return None
 
