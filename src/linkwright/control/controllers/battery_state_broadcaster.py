@@ -24,7 +24,9 @@ def _check_technology(name: str, value: int) -> Phrase | None:
     """Return an error message unless a number is a technology of ``sensor_msgs/msg/BatteryState``."""
     if 0 <= value <= _MAX_TECHNOLOGY:
         return None
-    return phrase("parameter '{name}' must be from 0 to {limit}, but it is {value}", name=name, limit=8, value=value)
+    return phrase(
+        "parameter '{name}' must be from 0 to {limit}, but it is {value}", name=name, limit=_MAX_TECHNOLOGY, value=value
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +66,7 @@ class BatteryProperties:
 class BatteryParameters:
     """Parameters of the battery broadcaster."""
 
-    batteries: tuple[str, ...] = parameter((), description="the names of the batteries in ros2_control")
+    batteries: tuple[str, ...] = parameter((), read_only=True, description="the names of the batteries in ros2_control")
     interfaces: Mapping[str, BatteryInterfaces] = for_each("batteries", BatteryInterfaces)
     properties: Mapping[str, BatteryProperties] = for_each("batteries", BatteryProperties, prefix="")
     sensor_name: str = parameter("", description="the sensor with an interface voltage; batteries replaces it")

@@ -23,9 +23,11 @@ _CHAIN = "filter_chain"
 class ChainedFilterParameters:
     """Parameters of the controller, besides the chains."""
 
-    input_interfaces: tuple[str, ...] = parameter((), description="the states to filter", check=not_empty)
+    input_interfaces: tuple[str, ...] = parameter(
+        (), read_only=True, description="the states to filter", check=not_empty
+    )
     output_interfaces: tuple[str, ...] = parameter(
-        (), description="the names of the filtered states, in the same order", check=not_empty
+        (), read_only=True, description="the names of the filtered states, in the same order", check=not_empty
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from linkwright.control.controllers.controller import ControllerError
@@ -10,6 +11,7 @@ from linkwright.control.motion.odometer import Odometer
 from linkwright.control.odometry import OdometryTopics, Variances, transforms_topic
 from linkwright.diagnostics import phrase
 from linkwright.messages import Time
+from linkwright.nodes.parameter_tables import parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _AXES = 6
@@ -33,6 +35,17 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
             )
         )
     return values
+
+
+@dataclass(frozen=True, kw_only=True)
+class OdometryParameters:
+    """The parameters of drives for the frames and the transform of the odometry."""
+
+    tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
+    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace if empty")
+    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
+    base_frame_id: str = parameter("base_link", description="the frame of the robot")
+    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
 
 
 def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
@@ -71,6 +84,7 @@ class DriveOdometry:
 
     Attributes:
         odometer: the source of the robot's pose and velocity.
+        frame: the frame in which the robot moves.
     """
 
     def __init__(
@@ -89,6 +103,7 @@ class DriveOdometry:
         rate: float = 0.0,
     ) -> None:
         self.odometer = Odometer(max(window, 1))
+        self.frame = frame
         output = node.publisher("nav_msgs/msg/Odometry", odometry)
         tf_output = transforms_topic(node, transforms)
         self._topics = OdometryTopics(frame, child, output, None, pose_variances, velocity_variances)
@@ -134,3 +149,27 @@ class DriveOdometry:
             return response
 
         node.service("control_msgs/srv/SetOdometry", "~/set_odometry", on_request)
+
+
+def create_odometry(
+    node: ControllerNode, parameters: OdometryParameters, odometry: str, transforms: str, **settings: Any
+) -> DriveOdometry:
+    """Return the odometry of a drive, whose frames have the prefix from its parameters.
+
+    Args:
+        node: the controller's node.
+        parameters: the parameters.
+        odometry: the name of the odometry topic.
+        transforms: the name of the transform topic.
+        settings: the other arguments of `DriveOdometry`.
+    """
+    prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
+    return DriveOdometry(
+        node,
+        odometry,
+        transforms,
+        frame=prefix + parameters.odom_frame_id,
+        child=prefix + parameters.base_frame_id,
+        publishes_transforms=parameters.enable_odom_tf,
+        **settings,
+    )

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from linkwright.control.controllers.drive_controller import DriveController
-from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
+from linkwright.control.controllers.drive_odometry import OdometryParameters, create_odometry, variances
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.messages import Header, Time, Vector3, get_message
@@ -31,18 +31,13 @@ _NO_ANGULAR_LIMITS = AngularLimits()
 
 
 @dataclass(frozen=True, kw_only=True)
-class LimitedDriveParameters:
+class LimitedDriveParameters(OdometryParameters):
     """Parameters of all drives with limits."""
 
-    tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
-    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace if empty")
-    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
-    base_frame_id: str = parameter("base_link", description="the frame of the robot")
     pose_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="the variances of the pose")
     twist_covariance_diagonal: tuple[float, ...] = parameter(_NO_VARIANCES, description="the variances of the velocity")
     open_loop: bool = parameter(False, description="whether odometry uses wheel commands instead of wheel states")
     position_feedback: bool = parameter(True, description="whether odometry uses wheel positions instead of velocities")
-    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
     cmd_vel_timeout: float = parameter(0.5, description="how long a command is valid, in seconds")
     publish_limited_velocity: bool = parameter(False, description="whether ~/cmd_vel_out is published")
     velocity_rolling_window_size: int = parameter(10, description="the window of the rolling mean of odometry")
@@ -72,16 +67,13 @@ class LimitedDrive(DriveController[P], Generic[P]):
         self._limiters = [limits.limiter(axis) for axis, limits in self.limits().items()]
         unstamped = "" if parameters.use_stamped_vel else "~/cmd_vel_unstamped"
         self._input = VelocityInput(node, "~/cmd_vel", timeout_s=parameters.cmd_vel_timeout, unstamped=unstamped)
-        prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
-        self._odometry = DriveOdometry(
+        self._odometry = create_odometry(
             node,
+            parameters,
             "~/odom",
             "/tf",
-            frame=prefix + parameters.odom_frame_id,
-            child=prefix + parameters.base_frame_id,
             pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
             velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
-            publishes_transforms=parameters.enable_odom_tf,
             window=parameters.velocity_rolling_window_size,
             rate=parameters.publish_rate,
         )

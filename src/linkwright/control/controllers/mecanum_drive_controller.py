@@ -13,7 +13,7 @@ from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_controller import DriveController
-from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
+from linkwright.control.controllers.drive_odometry import OdometryParameters, create_odometry, variances
 from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController, LinearLimits
 from linkwright.control.controllers.limited_drive import AngularLimits
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
@@ -54,7 +54,7 @@ _NO_ANGULAR_LIMITS = AngularLimits()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parameters:
+class Parameters(OdometryParameters):
     """The parameters of a mecanum_drive_controller."""
 
     reference_timeout: float = parameter(0.0, description="how long a command is valid, in seconds; 0 for one update")
@@ -67,11 +67,6 @@ class Parameters:
     rear_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it differs")
     rear_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it differs")
     kinematics: Kinematics = _NO_KINEMATICS
-    tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
-    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace if empty")
-    base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
-    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
     twist_covariance_diagonal: tuple[float, ...] = parameter(
         _DEFAULT_VARIANCES, description="the variances of the velocity"
     )
@@ -144,17 +139,13 @@ class MecanumDriveController(DriveController[Parameters]):
         self._limiters = [limits.limiter(axis) for axis, limits in axes.items()]
         timeout = parameters.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, qos=REFERENCE_QOS)
-        prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
-        self._frame = prefix + parameters.odom_frame_id
-        self._odometry = DriveOdometry(
+        self._odometry = create_odometry(
             node,
+            parameters,
             "~/odometry",
             "~/tf_odometry",
-            frame=self._frame,
-            child=prefix + parameters.base_frame_id,
             pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
             velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
-            publishes_transforms=parameters.enable_odom_tf,
         )
         self._odometry.create_reset_service(node)
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
@@ -218,7 +209,7 @@ class MecanumDriveController(DriveController[Parameters]):
     def _publish_state(self, time_ns: int, measured: list[float], requested: list[float]) -> None:
         front_left, front_right, rear_right, rear_left = measured
         state = get_message("control_msgs/msg/MecanumDriveControllerState")(
-            header=Header(stamp=Time.from_nanoseconds(time_ns), frame_id=self._frame),
+            header=Header(stamp=Time.from_nanoseconds(time_ns), frame_id=self._odometry.frame),
             front_left_wheel_velocity=front_left,
             front_right_wheel_velocity=front_right,
             back_right_wheel_velocity=rear_right,

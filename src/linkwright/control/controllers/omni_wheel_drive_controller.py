@@ -12,7 +12,7 @@ from math import isfinite
 
 from linkwright.control.controllers.controller import ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_controller import DriveController
-from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
+from linkwright.control.controllers.drive_odometry import OdometryParameters, create_odometry, variances
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.kinematics.drives import OmniDrive
@@ -31,7 +31,7 @@ class DiagonalCovariance:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OmniWheelParameters:
+class OmniWheelParameters(OdometryParameters):
     """The parameters of an omni_wheel_drive_controller."""
 
     wheel_offset: float = parameter(0.0, description="the angle of the first wheel from x, in rad")
@@ -40,14 +40,9 @@ class OmniWheelParameters:
     )
     robot_radius: float = parameter(0.0, description="the distance between the center and the wheels, in m")
     wheel_radius: float = parameter(0.0, description="the radius of the wheels, in m")
-    tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
-    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace if empty")
-    odom_frame_id: str = parameter("odom", description="the frame in which the robot moves")
-    base_frame_id: str = parameter("base_link", description="the frame of the robot")
     diagonal_covariance: DiagonalCovariance = DiagonalCovariance()
     open_loop: bool = parameter(False, description="whether odometry uses wheel commands instead of wheel states")
     position_feedback: bool = parameter(True, description="whether odometry uses wheel positions instead of velocities")
-    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
     cmd_vel_timeout: float = parameter(0.5, description="how long a command is valid, in seconds")
 
 
@@ -98,17 +93,14 @@ class OmniWheelDriveController(DriveController[OmniWheelParameters]):
             )
         self._drive = OmniDrive(count, parameters.robot_radius, parameters.wheel_radius, parameters.wheel_offset)
         self._input = VelocityInput(node, "~/cmd_vel", timeout_s=parameters.cmd_vel_timeout)
-        prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
         covariance = parameters.diagonal_covariance
-        self._odometry = DriveOdometry(
+        self._odometry = create_odometry(
             node,
+            parameters,
             "~/odom",
             "/tf",
-            frame=prefix + parameters.odom_frame_id,
-            child=prefix + parameters.base_frame_id,
             pose_variances=variances("diagonal_covariance.pose", covariance.pose),
             velocity_variances=variances("diagonal_covariance.twist", covariance.twist),
-            publishes_transforms=parameters.enable_odom_tf,
         )
         self._odometry.create_reset_service(node)
 

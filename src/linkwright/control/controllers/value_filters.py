@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from math import exp, isnan, nan, pi
-from statistics import fmean
-from typing import Any
+from statistics import fmean, median_low
+from typing import Any, ClassVar
 
 from linkwright.control.controllers.speed_limits import SpeedLimits
 from linkwright.diagnostics import Phrase, phrase
@@ -44,9 +44,11 @@ class FilterParameters(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mean(FilterParameters):
-    """``filters/MeanFilterDouble``: the mean of the last values."""
+class _Window(FilterParameters):
+    """A filter of the last values."""
 
+    REDUCE: ClassVar[Callable[[Collection[float]], float]]
+    """The function that returns the result for the last values."""
     number_of_observations: int = parameter(0, description="the number of values", check=above(0))
 
     def create(self) -> ValueFilter:
@@ -55,26 +57,23 @@ class Mean(FilterParameters):
 
         def apply(value: float) -> float:
             window.append(value)
-            return fmean(window)
+            return type(self).REDUCE(window)
 
         return apply
 
 
 @dataclass(frozen=True, kw_only=True)
-class Median(FilterParameters):
+class Mean(_Window):
+    """``filters/MeanFilterDouble``: the mean of the last values."""
+
+    REDUCE = fmean
+
+
+@dataclass(frozen=True, kw_only=True)
+class Median(_Window):
     """``filters/MedianFilterDouble``: the median of the last values, for an even number the smaller one of two."""
 
-    number_of_observations: int = parameter(0, description="the number of values", check=above(0))
-
-    def create(self) -> ValueFilter:
-        """Return a filter that has received no value."""
-        window: deque[float] = deque(maxlen=self.number_of_observations)
-
-        def apply(value: float) -> float:
-            window.append(value)
-            return sorted(window)[(len(window) - 1) // 2]
-
-        return apply
+    REDUCE = median_low
 
 
 @dataclass(frozen=True, kw_only=True)
