@@ -159,7 +159,7 @@ class TestSignals:
     ) -> None:
         running = start(write("a.launch.py", launch_file(action, head=head)))
         running.until("waiting")
-        assert running.end()[0] == 130
+        assert running.end()[0] == 130, running.err
         assert "Traceback" not in running.err
 
 

@@ -184,8 +184,10 @@ def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new
     bad = good + "def f(:\n"
     repository.commit({"rover/a.py": good if is_new else bad})
     repository.write({"rover/a.py": bad if is_new else good})
-    (subject,) = compare(repository).subjects
-    assert not subject.changes
+    result = compare(repository)
+    (subject,) = result.subjects
+    assert breaking(result) == ["cannot be parsed any more"] * is_new
+    assert len(subject.changes) == is_new
     (problem,) = subject.problems
     assert str(problem.text) == f"the {expected} version has a syntax error in line 3; its names are not known"
     assert problem.is_of_old is not is_new

@@ -66,7 +66,7 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     for file in files:
         pair = _Pair(*sides, file)
         problems = list(pair.problems())
-        changes = [] if problems else list(pair.changes())
+        changes = list(pair.lost_source()) if problems else list(pair.changes())
         if changes or problems:
             yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes, problems=problems)
 
@@ -206,6 +206,14 @@ class _Pair:
             yield Problem(
                 phrase("the new version has a syntax error in line {line}; its names are not known", line=lines[1])
             )
+
+    def lost_source(self) -> Iterator[Change]:
+        """Yield the change that only the old version can be parsed, unless other versions of Python may differ."""
+        names = self.new.names(self.file.new_path)
+        if names.error_line and names.is_error_certain:
+            text = phrase("cannot be parsed any more")
+            reason = phrase("programs that run or import the file fail")
+            yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
 
     def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         before = {_key(item): item for item in old_names.of(kind)}

@@ -93,6 +93,7 @@ class SourceNames:
         overrides: the names of functions that override those of a base class.
         is_program: whether the source is a program that is started, and not a library that is imported.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
+        is_error_certain: whether the syntax error is one in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
@@ -103,6 +104,7 @@ class SourceNames:
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False
     error_line: int = 0
+    is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
     has_star: bool = False
 

@@ -11,6 +11,8 @@ from linkwright.review.sources.python import read_dynamic_parameters, read_pytho
 
 _MAX_BYTES = 1 << 20
 _PYTHON_LINE = b"python"
+_FORMATTED_TEXT = "f-string"
+"""The beginning of the messages about errors in formatted texts."""
 
 
 def readable_source(path: Path) -> SourceText | None:
@@ -37,7 +39,8 @@ def read_source_names(path: Path) -> SourceNames:
         else:
             read_python(source, names)
     except SyntaxError as error:
-        return SourceNames(error_line=error.lineno or 1)
+        is_certain = not error.msg.startswith(_FORMATTED_TEXT)  # Python 3.12 accepts more of them
+        return SourceNames(error_line=error.lineno or 1, is_error_certain=is_certain)
     except (ValueError, RecursionError):
         return SourceNames()
     return names
