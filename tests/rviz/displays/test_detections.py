@@ -164,7 +164,7 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
 
         camera.publish(image(1))
         assert await settle_and_read() == [1.0, None, None]
-        # The image is no longer stored, because no detections were expected.
+        # Images without an expected detection are not stored, so these boxes have no image.
         detector.publish(detection_message(1, result("ball", 0.5)))
         assert await settle_and_read() == [1.0, 1.0, False]
         camera.publish(image(2))
