@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -113,6 +113,7 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
     old = _with_new_names(pair, old_values, new, moveit)
     rules = NameRules(old, new)
     readers = KeyReaders(pair.versions, pair.new_path)
+    new_keys = frozenset(_key(part) for name in new for part in part_names(name))
     for name, value in new.items():
         old_value = old.get(name)
         if (
@@ -132,10 +133,12 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
     for name, values_below in _lone_parts(old, new):
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)
-        below = [(each, old[each].text) for each in old if each not in new and _is_below(each, name)]
-        reasons = (moveit.removal_reason(each) or rules.removal_reason(each, value) for each, value in below)
+        reasons = (
+            moveit.removal_reason(each) or rules.removal_reason(each, value.text)
+            for each, value in values_below.items()
+        )
         reason = next((reason for reason in reasons if reason is not None), None)
-        reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new))
+        reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new_keys))
         yield ValueChange(name, "removed", _lone_content(name, values_below), location, reason)
 
 
@@ -180,12 +183,15 @@ def _lone_parts(
         yield next(iter(values_below)) if len(values_below) == 1 else part, values_below
 
 
-def _lost_keys(name: str, new: Mapping[str, YamlValue]) -> list[str]:
+def _lost_keys(name: str, new_keys: Collection[str]) -> list[str]:
     """Return the keys on the path of a value that the new version has nowhere; none for a parameter of a node."""
     if is_parameter(name):
         return []  # nodes declare their parameters with defaults
-    keys = {part.rpartition(".")[2] for other in new for part in part_names(other)}
-    return [key for part in part_names(name) if (key := part.rpartition(".")[2]) not in keys and "[" not in key]
+    return [key for key in map(_key, part_names(name)) if key not in new_keys and "[" not in key]
+
+
+def _key(part: str) -> str:
+    return part.rpartition(".")[2]
 
 
 def _is_below(name: str, part: str) -> bool:

@@ -235,11 +235,11 @@ def _with_inner_parts(parts: Mapping[str, _Facts], values: Mapping[str, YamlValu
     """Return parts with the parts inside them, the outer ones first."""
     result: dict[str, _Facts] = dict(parts)
     for name, value in values.items():
-        inner = part_names(name)[:-1]
-        if any(part in parts for part in inner):
-            for part in inner:
-                if any(part.startswith((f"{outer}.", f"{outer}[")) for outer in parts):
-                    result.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+        is_inside = False
+        for part in part_names(name)[:-1]:
+            if is_inside:
+                result.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+            is_inside = is_inside or part in parts
     return result
 
 
