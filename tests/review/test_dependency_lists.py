@@ -66,3 +66,11 @@ def test_comment_in_a_list_of_dependencies_is_listed_with_the_other_files(reposi
     repository.commit({"deps.repos": REPOS})
     repository.write({"deps.repos": f"# ours\n{REPOS}"})
     assert compare(repository).other_files == ["deps.repos"]
+
+
+def test_huge_list_is_not_read(repository, compare):
+    repository.commit({"deps.repos": REPOS})
+    repository.write({"deps.repos": REPOS + "# comment\n" * 500_000})
+    (found,) = compare(repository).subjects
+    (problem,) = found.problems
+    assert str(problem.text) == "the new version cannot be read: it is larger than 4 MB"

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
+from linkwright.review.sources.cpp_members import header_texts
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 
@@ -77,3 +80,16 @@ def test_parameters_of_default_member_initializers_in_a_header_are_compared(repo
     repository.write({"arm/include/arm/arm.hpp": header.replace("10.0", "20.0")})
     (found,) = compare(repository).subjects
     assert sentences(found) == ["parameter 'rate': default 10.0 -> 20.0"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="symbolic links of POSIX")
+@pytest.mark.parametrize("include", ["{outside}/secret.hpp", "../../../secret.hpp", "link.hpp"])
+def test_headers_outside_of_the_package_are_not_read(tmp_path, include):
+    (tmp_path / "secret.hpp").write_text("actionlib::SimpleActionServer<SecretAction> server_;\n")
+    source = tmp_path / "repository/arm/src/arm.cpp"
+    source.parent.mkdir(parents=True)
+    (source.parents[1] / "package.xml").write_text(MANIFEST["arm/package.xml"])
+    (source.parent / "link.hpp").symlink_to(tmp_path / "secret.hpp")
+    path = include.format(outside=tmp_path)
+    source.write_text(f'#include "{path}"\nArm::Arm() : server_(nh_, "reach", f, false) {{}}\n')
+    assert header_texts(source) == []

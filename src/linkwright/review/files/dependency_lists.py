@@ -12,7 +12,7 @@ import yaml
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.yaml_values import composed
+from linkwright.review.files.yaml_values import composed, read_yaml_text
 from linkwright.review.list_changes import change_text
 from linkwright.review.versions import Version
 
@@ -98,9 +98,9 @@ def read_repositories(file: Path) -> dict[str, Entry]:
     """Return the repositories in a file of vcstool or rosinstall, by the folder into which they are cloned.
 
     Raises:
-        UnreadableFileError: the text is not YAML.
+        UnreadableFileError: the text is not YAML, or too long.
     """
-    root = composed(file.read_text(encoding="utf-8"))
+    root = composed(read_yaml_text(file))
     if isinstance(root, yaml.SequenceNode):
         return dict(entry for item in root.value for entry in _rosinstall_entry(item))
     repositories = _mapping(root).get(_REPOSITORIES)
@@ -126,9 +126,13 @@ def _mapping(node: yaml.Node | None) -> dict[str, yaml.Node]:
 
 
 def read_requirements(file: Path) -> dict[str, Entry]:
-    """Return the Python packages in a file for pip by name, each with its versions; other lines by their text."""
+    """Return the Python packages in a file for pip by name, each with its versions; other lines by their text.
+
+    Raises:
+        UnreadableFileError: the text is too long.
+    """
     entries: dict[str, Entry] = {}
-    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+    for number, line in enumerate(read_yaml_text(file).splitlines(), 1):
         text = " ".join(_COMMENT.sub("", line).split())
         match = _REQUIREMENT.fullmatch(text)
         if match is None:

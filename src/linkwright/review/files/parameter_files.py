@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
-from linkwright.review.file_pair import FilePair, LimitError
+from linkwright.review.file_pair import FilePair
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.moveit_names import MoveItRules
@@ -26,12 +25,11 @@ from linkwright.review.files.renamed_parts import edit_of, parent_of, renamed_pa
 from linkwright.review.files.value_changes import ValueChange, merged_values
 from linkwright.review.files.yaml_includes import with_includes
 from linkwright.review.files.yaml_lists import item_labels
-from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, yaml_values
+from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, read_yaml_text, yaml_values
 from linkwright.review.list_changes import shortened
 from linkwright.review.merging import common_reason
 from linkwright.review.versions import Version
 
-_MAX_BYTES = 4 << 20
 _MAX_VALUES = 32
 """The number of values that the line about an added file shows, divided among the nodes or keys."""
 _MIN_VALUES = 3
@@ -41,7 +39,7 @@ _NAMES_OF_ITEMS = ("name", "id")
 
 def compare_parameter_files(pair: FilePair) -> None:
     """Compare two versions of a YAML file, value by value."""
-    texts = pair.read(_read)
+    texts = pair.read(read_yaml_text)
     if texts is None:
         return
     bridges = pair.read(lambda file: read_bridges(texts[file == pair.new_file]) or [])
@@ -61,7 +59,7 @@ def compare_parameter_files(pair: FilePair) -> None:
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
     """Return the parameters of nodes, or the top-level keys of other files, with their values; None for others."""
-    text = _read(version.file(path))
+    text = read_yaml_text(version.file(path))
     bridges = read_bridges(text)
     if bridges:
         return phrase("bridged topics {names}", names=joined_first([bridge.topic for bridge in bridges], MAX_NAMES))
@@ -219,12 +217,6 @@ def _with_new_names(
         reason = common_reason(each.reason for each in (first, *others))
         pair.changes.append(replace(first, reason=reason, other_names=names))
     return with_new_parts(old, renamed)
-
-
-def _read(file: Path) -> str:
-    if file.stat().st_size > _MAX_BYTES:
-        raise LimitError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
-    return file.read_text(encoding="utf-8")
 
 
 def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:

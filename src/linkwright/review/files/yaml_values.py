@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 
 import yaml
 
@@ -13,6 +14,7 @@ from linkwright.diagnostics import foreign, phrase
 from linkwright.review.file_pair import LimitError, UnreadableFileError
 from linkwright.review.list_changes import EMPTY
 
+_MAX_BYTES = 4 << 20
 _MAX_VALUES = 20_000
 """The maximum number of values of a file. Aliases can repeat a value billions of times."""
 NULL = "null"
@@ -94,6 +96,18 @@ def yaml_values(root: yaml.Node, labels: Mapping[int, str]) -> dict[str, YamlVal
         if len(values) > _MAX_VALUES:
             raise LimitError(phrase("it has more than {count} values", count=_MAX_VALUES))
     return values
+
+
+def read_yaml_text(file: Path) -> str:
+    """Return the text of a file of values.
+
+    Raises:
+        LimitError: the file is larger than 4 MiB.
+        OSError, UnicodeDecodeError: the file cannot be read.
+    """
+    if file.stat().st_size > _MAX_BYTES:
+        raise LimitError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
+    return file.read_text(encoding="utf-8")
 
 
 def composed(text: str) -> yaml.Node | None:

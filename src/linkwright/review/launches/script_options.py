@@ -19,6 +19,7 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.list_changes import list_items
 from linkwright.review.sources.python2 import as_python3
+from linkwright.review.sources.reading import readable_source
 from linkwright.review.versions import Version, Versions
 
 _LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
@@ -138,12 +139,12 @@ def _passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bo
 
 def _read_options(script: Path) -> _Options | None:
     """Return the options of a script, or None if it has no parser of options, or accepts others."""
+    source = readable_source(script)
+    if source is None or _PARSER not in source.text or any(name in source.text for name in _OPEN_PARSERS):
+        return None
     try:
-        text = script.read_text("utf-8", errors="replace")
-        if _PARSER not in text or any(name in text for name in _OPEN_PARSERS):
-            return None
-        python = _parsed(SourceText(str(script), text))
-    except (OSError, ValueError, SyntaxError, RecursionError):
+        python = _parsed(source)
+    except (ValueError, SyntaxError, RecursionError):
         return None
     names: set[str] = set()
     required: set[str] = set()

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from linkwright.packages import enclosing_package
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind
 
 _CLASS = r"(?:\w+::)*(?:Simple(?P<action>ActionServer|ActionClient)|Subscriber)\s*<(?P<type>[^<>;(){}]*)>"
@@ -78,6 +79,8 @@ def _type(text: str) -> str:
 def header_texts(path: Path) -> list[str]:
     """Return the texts of the headers beside a source, or in a folder ``include``, that the source includes.
 
+    Headers outside of the package of the source are left out, also those that links and ``..`` lead to.
+
     Args:
         path: the path of a source; one of a header has no headers.
     """
@@ -87,10 +90,13 @@ def header_texts(path: Path) -> list[str]:
         text = path.read_text("utf-8", errors="replace")
     except OSError:
         return []
+    package = enclosing_package(path.parent)
+    base = (path.parent if package is None else package[1]).resolve()
     folders = [path.parent, *(folder / "include" for folder in list(path.parents)[:_MAX_FOLDERS])]
     texts = []
     for match in _INCLUDE.finditer(text):
-        file = next((folder / match["path"] for folder in folders if (folder / match["path"]).is_file()), None)
+        files = ((folder / match["path"]).resolve() for folder in folders)
+        file = next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
         if file is not None and file.stat().st_size <= _MAX_BYTES:
             texts.append(file.read_text("utf-8", errors="replace"))
     return texts
