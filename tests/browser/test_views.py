@@ -50,6 +50,17 @@ def test_mouse_moves_orthographic_view_by_its_scale(scene):
     until(scene.page, f"Math.abs(lw.view.values.Scale - {SCALE * 1.12}) < 0.5")
 
 
+def test_selected_number_stays_selected_while_mouse_changes_it(scene):
+    scene.page.mouse.move(*scene.pixel(0, -3))
+    field = scene.page.locator(".row").filter(has=scene.page.get_by_text("Scale", exact=True)).locator("input")
+    field.focus()
+    scene.page.mouse.wheel(0, -120)
+    becomes(field.input_value, f"{SCALE * 1.12:g}")
+    scene.page.keyboard.type("40")  # replaces the number, although the number changed after it was selected
+    scene.page.keyboard.press("Enter")
+    until(scene.page, "lw.view.values.Scale === 40")
+
+
 def test_fps_view_moves_and_rotates(scene):
     scene.show("FPS")
     scene.page.keyboard.press("z")

@@ -31,10 +31,17 @@ export class TextEditor implements Editor {
 
   show(item: TreeItem): void {
     const text = this.options.format(item.value);
-    const isEditing = document.activeElement === this.element && this.element.value !== this.shownText;
+    const { element } = this;
+    const hasFocus = document.activeElement === element;
+    const isEditing = hasFocus && element.value !== this.shownText;
     this.shownText = text;
-    if (!isEditing && this.element.value !== text) this.element.value = text;
-    this.element.setAttribute("aria-label", item.name);
+    if (!isEditing && element.value !== text) {
+      const isAllSelected = hasFocus && element.selectionStart === 0 && element.selectionEnd === element.value.length;
+      element.value = text;
+      // A new value clears the selection, and the user's next key would be added to the text instead of replacing it.
+      if (isAllSelected) element.select();
+    }
+    element.setAttribute("aria-label", item.name);
   }
 
   focus(): boolean {
