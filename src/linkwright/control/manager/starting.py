@@ -5,7 +5,10 @@ Source: the controller manager of ros2_control, with the names of Humble and of 
 
 from __future__ import annotations
 
-from linkwright.control.hardware.description import hardware_from_robot
+from collections.abc import Callable
+from typing import TypeAlias
+
+from linkwright.control.hardware.description import HardwareDescription, hardware_from_robot
 from linkwright.control.hardware.limits import CommandLimits, JointLimiter, limits_of
 from linkwright.control.hardware.resources import HardwareFactory, Resources
 from linkwright.control.manager.manager import ControllerManager
@@ -17,10 +20,21 @@ from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE, UNCONFIGURED
 from linkwright.messages.distribution import is_before_kilted
 from linkwright.urdf import Robot
 
+HardwareReader: TypeAlias = Callable[[Robot], tuple[list[HardwareDescription], list[Diagnostic]]]
+"""A function that returns the hardware in a robot's description, and findings about it."""
+
 _INITIAL_STATE_PARAMETER = "hardware_components_initial_state"
 
 
-def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, factory: HardwareFactory) -> bool:
+def load_hardware(
+    manager: ControllerManager,
+    text: str,
+    library: DescriptionLibrary,
+    factory: HardwareFactory,
+    *,
+    read: HardwareReader = hardware_from_robot,
+    enforces_limits: bool = False,
+) -> bool:
     """Load the hardware of a description, and bring it to its initial states.
 
     The manager's parameters contain the initial states.
@@ -30,6 +44,8 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
         text: the URDF.
         library: the robot descriptions that the process has read.
         factory: creates hardware from its description.
+        read: reads the hardware in the robot's description.
+        enforces_limits: whether commands are limited even if the manager's parameters do not request it.
 
     Returns:
         Whether the description is readable; its errors are logged.
@@ -40,13 +56,13 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
         logger.error("The published robot description file (urdf) seems not to be genuine.")
         _log(logger, [diagnostic for diagnostic in reading.diagnostics if diagnostic.severity is Severity.ERROR])
         return False
-    descriptions, findings = hardware_from_robot(reading.robot)
+    descriptions, findings = read(reading.robot)
     _log(logger, findings)
     manager.robot_description = text
     resources = manager.resources
     resources.load(descriptions, factory)
-    enforces_limits = node.get_parameter_or("enforce_command_limits").value
-    if enforces_limits if enforces_limits is not None else not is_before_kilted():
+    parameter = node.get_parameter_or("enforce_command_limits").value
+    if enforces_limits or (parameter if parameter is not None else not is_before_kilted()):
         manager.limits = _command_limits(reading.robot, resources, logger)
     remaining = dict.fromkeys(resources.components)
     inactive_names = [

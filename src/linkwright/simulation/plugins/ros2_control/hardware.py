@@ -16,9 +16,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from linkwright.control.hardware.component import Hardware
-from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.description import ComponentDescription, HardwareDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
-from linkwright.control.motion.pid import Pid
+from linkwright.control.motion.pid import Pid, PidGains
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.log.logger import Logger
 from linkwright.simulation.plugins.plugin import PluginContext
@@ -68,7 +68,7 @@ class SimulatedSystem(Hardware):
         gain: float = nan,
         values: Mapping[str, Any] = MappingProxyType({}),
     ) -> None:
-        description, gains = pids_of(description, values, logger)
+        description, gains = self._split_gains(description, values, logger)
         super().__init__(description, logger)
         self.has_pids = bool(gains)
         self._joints: dict[str, SimulatedJoint] = {}
@@ -94,7 +94,7 @@ class SimulatedSystem(Hardware):
                     and command.kind in _COMMAND_KINDS
                     and joint_description.mimic is None
                 },
-                holds_position=holds_position,
+                holds_position=holds_position and self._may_hold(joint_description),
                 gain=gain,
                 pids={
                     kind: Pid(each_gains)
@@ -105,6 +105,16 @@ class SimulatedSystem(Hardware):
         for joint in self._joints.values():
             joint.begin()
         self._sensors = self._create_sensors(plugin)
+
+    def _split_gains(
+        self, description: HardwareDescription, values: Mapping[str, Any], logger: Logger
+    ) -> tuple[HardwareDescription, Mapping[tuple[str, str], PidGains]]:
+        """Return the description with the interfaces that controllers see, and the gains as `pids_of` does."""
+        return pids_of(description, values, logger)
+
+    def _may_hold(self, joint: ComponentDescription) -> bool:
+        """Return whether a joint can hold its position while it has no command."""
+        return True
 
     def _remove_interfaces(self, component: str) -> None:
         """Remove the state and command interfaces of a component that the model does not have."""

@@ -9,18 +9,21 @@ Source: gazebo_ros2_control and gz_ros2_control (parameters, node names, how the
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import nan
-from typing import Any
+from typing import Any, ClassVar, Generic, TypeVar
 
 from linkwright.control.hardware.component import Hardware
-from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.description import HardwareDescription, hardware_from_robot
 from linkwright.control.hardware.resources import Resources
 from linkwright.control.manager.manager import ControllerManager, SavedState
 from linkwright.control.manager.nodes import ProcessArguments
 from linkwright.control.manager.services import ManagerServices
 from linkwright.control.manager.starting import load_hardware
 from linkwright.descriptions import DescriptionLibrary
+from linkwright.diagnostics import Diagnostic
 from linkwright.graph import DESCRIPTION_QOS, Logger, Node
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
@@ -30,32 +33,54 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.plugins.ros2_control.hardware import SimulatedSystem
 from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.urdf import Robot
 
 _DEFAULT_RATE = 100
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parameters:
-    """Parameters of the ros2_control plugins."""
+class ManagerParameters:
+    """Parameters of all plugins that run a controller manager."""
 
     parameters: tuple[str, ...] = ()
     controller_manager_name: str = "controller_manager"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(ManagerParameters):
+    """Parameters of the ros2_control plugins."""
+
     hold_joints: bool = True
     position_proportional_gain: float = nan
 
 
-class SimulatedControl(SimulatedPlugin[Parameters]):
-    """The substitute for the ros2_control plugins: it runs the controllers of a robot."""
+P = TypeVar("P", bound=ManagerParameters)
 
-    PARAMETERS = Parameters
-    IGNORED = (
-        "robot_param",  # the description is received on a topic
-        "robot_param_node",
-        "e_stop_topic",
-        "control_period",
-        "robot_sim_type",
-        "controller_manager_prefix_node_name",
-    )
+
+class SimulatedManager(SimulatedPlugin[P], Generic[P]):
+    """A plugin that runs a controller manager for the joints of its model.
+
+    Attributes:
+        ENFORCES_LIMITS: whether commands are limited even if the manager's parameters do not request it.
+    """
+
+    ENFORCES_LIMITS: ClassVar[bool] = False
+
+    def _read_hardware(self, robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
+        """Return the hardware in the robot's description, and findings about it."""
+        return hardware_from_robot(robot)
+
+    def _update_rate(self, values: dict[str, Any]) -> float:
+        """Return the rate of the updates in Hz, from the parameters of the manager."""
+        return float(values.get("update_rate", _DEFAULT_RATE))
+
+    def _description_topics(self, node: Node) -> Iterable[str]:
+        """Return the topics of the robot's description; the first description that arrives is used."""
+        return (node.handle.resolve_topic_name(name) for name in ("robot_description", "~/robot_description"))
+
+    @abstractmethod
+    def _system_of(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
+        """Create the hardware of a description."""
 
     def start(self) -> None:
         """Create the controller manager, and subscribe to the topics of the robot's description."""
@@ -82,25 +107,19 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         )
         node.graph.creators[node.get_logger().name] = self.node.logger.name
         self._manager_node = SteppedNode(node, self.node.exchange, owned=True, calls=self.node.calls)
-        rate = values.get("update_rate", _DEFAULT_RATE)
+        self._manager_values = values
         self._manager = ControllerManager(
             node,
             self.node.exchange,
             Resources(node.get_logger()),
             ProcessArguments(parameter_rules, node_description.remappings),
-            update_rate=float(rate),
-        )
-        self._position_gain = float(
-            values.get("position_proportional_gain", self.parameters.position_proportional_gain)
+            update_rate=self._update_rate(values),
         )
         self._systems: list[SimulatedSystem] = []
         self._last_update = self.simulation.time
         self._is_loaded = False
         node.get_logger().info("Loading controller_manager")
-        topics = dict.fromkeys(
-            node.handle.resolve_topic_name(topic_name) for topic_name in ("robot_description", "~/robot_description")
-        )
-        for topic in topics:
+        for topic in dict.fromkeys(self._description_topics(node)):
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
 
     def reset(self) -> None:
@@ -132,7 +151,14 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         if self._is_loaded:
             return
         manager = self._manager
-        self._is_loaded = load_hardware(manager, message.data, DescriptionLibrary(), self._create_system)
+        self._is_loaded = load_hardware(
+            manager,
+            message.data,
+            DescriptionLibrary(),
+            self._create_system,
+            read=self._read_hardware,
+            enforces_limits=self.ENFORCES_LIMITS,
+        )
         if not self._is_loaded:
             return
         services = ManagerServices(manager, self._manager_node)
@@ -142,10 +168,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         manager.resume(self.stored_values.pop(self._manager_node.name, SavedState()))
 
     def _create_system(self, description: HardwareDescription, logger: Logger) -> Hardware:
-        holds_joints = self.parameters.hold_joints
-        system = SimulatedSystem(
-            description, logger, self, holds_position=holds_joints, gain=self._position_gain, values=self._values
-        )
+        system = self._system_of(description, logger)
         self._systems.append(system)
         if system.has_pids:
             self.every(0.0, lambda: system.push(self.simulation.step / NANOSECONDS_PER_SECOND))
@@ -155,3 +178,28 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         now = self.simulation.time
         period_ns, self._last_update = now - self._last_update, now
         self._manager.cycle(now, period_ns / NANOSECONDS_PER_SECOND)
+
+
+class SimulatedControl(SimulatedManager[Parameters]):
+    """The substitute for the ros2_control plugins: it runs the controllers of a robot."""
+
+    PARAMETERS = Parameters
+    IGNORED = (
+        "robot_param",  # the description is received on a topic
+        "robot_param_node",
+        "e_stop_topic",
+        "control_period",
+        "robot_sim_type",
+        "controller_manager_prefix_node_name",
+    )
+
+    def _system_of(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
+        gain = self._manager_values.get("position_proportional_gain", self.parameters.position_proportional_gain)
+        return SimulatedSystem(
+            description,
+            logger,
+            self,
+            holds_position=self.parameters.hold_joints,
+            gain=float(gain),
+            values=self._values,
+        )
