@@ -25,6 +25,18 @@ _UNSUPPORTED = {
     ),
 }
 """For each controller of ros2_controllers that is not supported, a hint for the user."""
+_REPLACED = {
+    "effort_controllers/JointGroupPositionController": "pid_controller/PidController",
+    "force_torque_sensor_controller/ForceTorqueSensorController": (
+        "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
+    ),
+    "four_wheel_steering_controller/FourWheelSteeringController": (
+        "ackermann_steering_controller/AckermannSteeringController"
+    ),
+    "imu_sensor_controller/ImuSensorController": "imu_sensor_broadcaster/IMUSensorBroadcaster",
+    "velocity_controllers/JointGroupPositionController": "pid_controller/PidController",
+}
+"""For each controller of ROS 1 with other parameters in ROS 2, the type that replaces it."""
 
 
 def controller_types() -> list[str]:
@@ -43,6 +55,8 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
     if entry is None:
         message = phrase("no installed package provides a controller of type '{name}'", name=type_name)
         hint = _UNSUPPORTED.get(type_name) or did_you_mean(type_name, controller_types())
+        if type_name in _REPLACED:
+            hint = phrase("use {type}, which replaces this type of ROS 1", type=_REPLACED[type_name])
         raise LinkwrightError(Diagnostic("CTL103", message, hint=hint))
     message = phrase("the controller '{name}' cannot be imported", name=type_name)
     loaded_class: type[Controller[Any]] = load_extension(entry, "CTL104", message)

@@ -1,0 +1,55 @@
+"""Trajectory controllers under their type names of ROS 1, which contain the commanded interface.
+
+Source: position_controllers, velocity_controllers and effort_controllers of ros_controllers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
+from linkwright.control.controllers.joint_trajectory_parameters import Parameters
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+from linkwright.nodes.parameter_tables import parameter
+
+_STATES = (POSITION, VELOCITY)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PositionParameters(Parameters):
+    """Parameters of ``position_controllers/JointTrajectoryController``."""
+
+    command_interfaces: tuple[str, ...] = parameter((POSITION,), read_only=True, description="the command interface")
+    state_interfaces: tuple[str, ...] = parameter(_STATES, read_only=True, description="the state interfaces")
+
+
+@dataclass(frozen=True, kw_only=True)
+class VelocityParameters(PositionParameters):
+    """Parameters of ``velocity_controllers/JointTrajectoryController``."""
+
+    command_interfaces: tuple[str, ...] = parameter((VELOCITY,), read_only=True, description="the command interface")
+
+
+@dataclass(frozen=True, kw_only=True)
+class EffortParameters(PositionParameters):
+    """Parameters of ``effort_controllers/JointTrajectoryController``."""
+
+    command_interfaces: tuple[str, ...] = parameter((EFFORT,), read_only=True, description="the command interface")
+
+
+class PositionTrajectoryController(JointTrajectoryController):
+    """``position_controllers/JointTrajectoryController``."""
+
+    PARAMETERS = PositionParameters
+
+
+class VelocityTrajectoryController(JointTrajectoryController):
+    """``velocity_controllers/JointTrajectoryController``."""
+
+    PARAMETERS = VelocityParameters
+
+
+class EffortTrajectoryController(JointTrajectoryController):
+    """``effort_controllers/JointTrajectoryController``."""
+
+    PARAMETERS = EffortParameters
