@@ -11,6 +11,7 @@ from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
+from linkwright.sdf.plugins import library_name
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 
@@ -52,6 +53,11 @@ def _is_left_over(gazebo: Element, name: str) -> bool:
     return _PLACEHOLDER_CHARACTERS.isdisjoint(name) and not any(
         child.tag in _IMPORTANT_ELEMENTS for child in gazebo.elements()
     )
+
+
+def _is_ros1_control(element: Element) -> bool:
+    """Return whether an element is the plugin of ROS 1 that reads transmissions."""
+    return element.tag == "plugin" and library_name(element.attributes.get("filename", "")) == "gazebo_ros_control"
 
 
 def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
@@ -384,9 +390,9 @@ class TransmissionIgnored(Rule):
     ## Why
 
     A `<transmission>` in `<robot>` is the form of ROS 1. ros2_control and its Gazebo plugins only read joints,
-    interfaces and transmissions inside `<ros2_control>`. Robots that have both forms are not reported. Neither are
-    files that may be for ROS 1: those in packages built with catkin, the build tool of ROS 1, and those outside a
-    package.
+    interfaces and transmissions inside `<ros2_control>`. Only the simulation of Linkwright also runs the plugin of
+    ROS 1, `libgazebo_ros_control.so`. Robots that have both forms are not reported. Neither are files that may be for
+    ROS 1: those in packages built with catkin, the build tool of ROS 1, and those outside a package.
 
     ## Example
 
@@ -422,8 +428,7 @@ class TransmissionIgnored(Rule):
             message = phrase("nothing in ROS 2 reads <transmission> directly in <robot>")
             if len(transmissions) > 1:
                 message = phrase("{message} (and {count} more)", message=message, count=len(transmissions) - 1)
-            yield self.report(
-                message,
-                transmissions[0],
-                hint=phrase("write <ros2_control> with the joints and their interfaces"),
-            )
+            hint = phrase("write <ros2_control> with the joints and their interfaces")
+            if any(_is_ros1_control(plugin) for gazebo in subject.elements("gazebo") for plugin in gazebo.elements()):
+                hint = phrase("{hint}, and libgazebo_ros2_control.so instead of libgazebo_ros_control.so", hint=hint)
+            yield self.report(message, transmissions[0], hint=hint)
