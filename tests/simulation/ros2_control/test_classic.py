@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import asynccontextmanager
+from math import tau
 
 import pytest
 
@@ -118,6 +119,17 @@ async def test_joint_without_command_falls_only_with_effort_interface(file):
             assert (abs(world.state[0]) < 0.05) is is_held, kind
 
 
+async def test_wheel_without_controller_is_free_for_other_plugins(file):
+    text = urdf("velocity", file("velocity"), effort=100.0).replace("revolute", "continuous")
+    async with arm(text) as (world, _):
+        await world.advance(0.3)
+        assert world.state[0] > 0.2
+        await world.start_controllers()
+        await world.move(0.0)
+        await world.advance(0.5)
+        assert world.state[1] == pytest.approx(0.0, abs=0.12)
+
+
 async def test_effort_commands_push_the_joint_within_its_limit(file):
     async with arm(urdf("effort", file("effort"), effort=3.0)) as (world, log):
         states = Recording(world.graph, world.server.node, "/joint_states")
@@ -184,6 +196,16 @@ async def test_gains_are_in_the_root_namespace_unless_legacy_mode_is_off(file, l
             await world.move(0.3, "/r1/arm/commands")
             await world.advance(0.8)
             assert (world.state[0] > 0.32) is has_pid
+
+
+async def test_pid_of_continuous_joint_turns_the_shortest_way(file):
+    text = urdf("position", file("position", "p: 60.0, d: 6.0")).replace("revolute", "continuous")
+    text = text.replace('velocity="4"', 'velocity="0"')  # without a limit, the whole command arrives at once
+    async with arm(text) as (world, _):
+        await world.start_controllers()
+        await world.move(6.0)
+        await world.advance(2.0)
+        assert world.state[0] == pytest.approx(6.0 - tau + 0.2 * 9.81 / 60.0, abs=0.05)
 
 
 async def test_gains_without_p_or_for_efforts_are_ignored(file):

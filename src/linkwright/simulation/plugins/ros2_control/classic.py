@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.control.hardware.description import ComponentDescription, HardwareDescription
-from linkwright.control.hardware.interfaces import EFFORT, POSITION
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
 from linkwright.control.hardware.transmissions import hardware_from_transmissions
 from linkwright.control.motion.pid import PidGains
 from linkwright.diagnostics import Diagnostic, phrase
@@ -23,7 +23,9 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.ros2_control.classic_gains import classic_gains, gains_of_namespace
 from linkwright.simulation.plugins.ros2_control.hardware import SimulatedSystem
+from linkwright.simulation.plugins.ros2_control.joints import is_continuous
 from linkwright.simulation.plugins.ros2_control.plugin import ManagerParameters, SimulatedManager
+from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.urdf import Robot
 
 _DEFAULT_SIMULATOR = "DefaultRobotHWSim"
@@ -60,8 +62,13 @@ class ClassicSystem(SimulatedSystem):
                 gains[joint.name, kind] = joint_gains
         return description, gains
 
-    def _may_hold(self, joint: ComponentDescription) -> bool:
-        return all(command.name != EFFORT for command in joint.commands)
+    def _may_hold(self, joint: ComponentDescription, placed_joint: PlacedJoint) -> bool:
+        """Return whether a joint holds its position while it has no command.
+
+        A deliberate difference: wheels without a controller roll, so that another plugin can drive them.
+        """
+        kind = joint.commands[0].name
+        return kind != EFFORT and not (kind == VELOCITY and is_continuous(placed_joint))
 
     def stop(self, *, active: bool) -> None:
         """Switch the emergency stop on or off."""

@@ -25,6 +25,7 @@ from linkwright.simulation.plugins.plugin import PluginContext
 from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
 from linkwright.simulation.plugins.ros2_control.pids import pids_of
 from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, sensors_of
+from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.simulation.simulation import Simulation
 
 _COMMAND_KINDS = (POSITION, VELOCITY, EFFORT)
@@ -94,7 +95,8 @@ class SimulatedSystem(Hardware):
                     and command.kind in _COMMAND_KINDS
                     and joint_description.mimic is None
                 },
-                holds_position=holds_position and self._may_hold(joint_description),
+                holds_position=holds_position
+                and self._may_hold(joint_description, plugin.simulation.scene.joints[name]),
                 gain=gain,
                 pids={
                     kind: Pid(each_gains)
@@ -112,8 +114,8 @@ class SimulatedSystem(Hardware):
         """Return the description with the interfaces that controllers see, and the gains as `pids_of` does."""
         return pids_of(description, values, logger)
 
-    def _may_hold(self, joint: ComponentDescription) -> bool:
-        """Return whether a joint can hold its position while it has no command."""
+    def _may_hold(self, joint: ComponentDescription, placed_joint: PlacedJoint) -> bool:
+        """Return whether a joint of the model can hold its position while it has no command."""
         return True
 
     def _remove_interfaces(self, component: str) -> None:
