@@ -75,3 +75,21 @@ def test_inferred_elements_have_source_locations(robot):
     document, inference = read_and_inferred(robot)
     assert all(diagnostic.span is not None and diagnostic.source is not None for diagnostic in inference.diagnostics)
     assert all(element.source is not None for element in complete_description(document, inference).root.walk())
+
+
+@pytest.mark.parametrize(
+    "parameters", ["", "<parameters>/nowhere.yaml</parameters>", "<parameters>{file}</parameters>"]
+)
+def test_controllers_of_ros1_work_only_with_parameter_file(parameters):
+    element = parameters.format(file=PAGE)
+    document, inference = read_and_inferred(
+        '<robot name="r"><link name="base_link"/><link name="a"/><joint name="j" type="revolute"><parent '
+        'link="base_link"/><child link="a"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+        f'<gazebo><plugin name="c" filename="libgazebo_ros_control.so">{element}</plugin><static>1</static></gazebo>'
+        "</robot>"
+    )
+    text = write(complete_description(document, inference))
+    has_file = "{file}" in parameters
+    assert ("libgazebo_ros_control.so" in text) is has_file
+    assert "<static>1</static>" in text
+    assert ("DRIVE205" in {diagnostic.code for diagnostic in inference.diagnostics}) is not has_file

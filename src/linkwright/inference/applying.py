@@ -1,4 +1,4 @@
-"""Add inferred elements to a description in memory."""
+"""Add inferred elements to a description in memory, and remove those that would disturb them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SINGLE = ("inertial", "axis")
 
 
 def complete_description(document: Document, inference: Inference) -> Document:
-    """Return a description with all inferred elements, so that a simulator can read it.
+    """Return a description with all inferred elements and without those to remove, for a simulator.
 
     Args:
         document: the expanded description from which the inference was made; it is not changed.
@@ -29,7 +29,11 @@ def complete_description(document: Document, inference: Inference) -> Document:
                 _at_owner(element, finding.owner) for element in finding.added
             )
     root = _with_children(document.root, added)
-    root.children = [_with_children(child, added) if isinstance(child, Element) else child for child in root.children]
+    removed = {id(element) for element in inference.removed}
+    root.children = [
+        _without(_with_children(child, added), removed) if isinstance(child, Element) else child
+        for child in root.children
+    ]
     assert not added, "the inference is about another reading of the description"
     result = Document(root, document.source)
     result.prolog, result.epilog = document.prolog, document.epilog
@@ -46,6 +50,16 @@ def _with_children(element: Element, added: dict[int, list[Element]]) -> Element
     replaced = {element.tag for element in new_children if element.tag in SINGLE}
     kept_children = [child for child in element.children if not (isinstance(child, Element) and child.tag in replaced)]
     result.children = [*kept_children, *new_children]
+    return result
+
+
+def _without(element: Element, removed: set[int]) -> Element:
+    """Return a copy of an element without the children to remove, or the element if it has none of them."""
+    kept_children = [child for child in element.children if id(child) not in removed]
+    if len(kept_children) == len(element.children):
+        return element
+    result = copy(element)
+    result.plan, result.children = None, kept_children
     return result
 
 

@@ -23,6 +23,8 @@ _DRIVE_PATTERN = re.compile(
 )
 _JOINT_STATES_PATTERN = re.compile(r"joint[_-]state[_-]publisher", re.IGNORECASE)
 _JOINT_CONTROL_PATTERN = re.compile(r"joint[_-](?:position|pose|trajectory|controller)", re.IGNORECASE)
+_ROS1_CONTROL = "gazebo_ros_control"
+"""The library of ROS 1 whose controllers are in the parameter server, unless its element names parameter files."""
 _ROS2_CONTROL_PATTERN = re.compile(r"ros2?_control")
 _PLUGIN_GROUP = "linkwright.simulated_plugins"
 _SIMULATOR_PATTERN = re.compile(r"gz|gazebo|ign|mujoco|isaac", re.IGNORECASE)
@@ -101,7 +103,18 @@ def _is_working(plugin: Element) -> bool:
     supported = extensions(_PLUGIN_GROUP)
     names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
     files = [Path(element.text().strip()) for element in plugin.elements("parameters")]
+    if _ROS1_CONTROL in names and not files:
+        return False
     return any(name in supported for name in names) and all(file.exists() for file in files if file.is_absolute())
+
+
+def plugins_without_controllers(robot: Robot) -> tuple[Element, ...]:
+    """Return the plugins that would hold the joints of a drive, because they have no controllers."""
+    return tuple(
+        plugin
+        for plugin in _drive_plugins(robot)
+        if library_name(plugin.attributes.get("filename", "")) == _ROS1_CONTROL and not _is_working(plugin)
+    )
 
 
 def publishes_joint_states(robot: Robot) -> bool:

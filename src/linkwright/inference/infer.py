@@ -112,6 +112,7 @@ class _InferenceBuilder:
             is_fixed,
             0.0 if is_fixed else ground,
             masses,
+            gazebo.plugins_without_controllers(self._robot),
         )
 
     def _link_masses(self, findings: list[InferredFact]) -> dict[str, float]:

@@ -99,6 +99,7 @@ class Inference:
         ground_z: the z of the ground in the root's frame, in m, with all joints at zero: that of the lowest wheel, or
             without wheels of the lowest point; 0 for a fixed base. A robot is placed in a world at minus this height.
         masses: the mass of each link in kg, declared or inferred.
+        removed: the elements of the description that would disturb the drive.
     """
 
     drive: Drive | None
@@ -109,6 +110,7 @@ class Inference:
     fixed_base: bool = False
     ground_z: float = 0.0
     masses: Mapping[str, float] = field(default_factory=dict)
+    removed: tuple[Element, ...] = ()
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
