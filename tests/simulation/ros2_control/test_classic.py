@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import asynccontextmanager
 from math import tau
+from pathlib import Path
 
 import pytest
 
@@ -11,7 +13,7 @@ from linkwright.control.motion.pid import CLAMPED, NONE
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph, LogLevel
 from linkwright.sdf.from_urdf import model_from_robot
-from linkwright.simulation.plugins.ros2_control.classic_gains import classic_gains
+from linkwright.simulation.plugins.ros2_control.classic_gains import classic_gains, gains_of_namespace
 from linkwright.testing import Recording
 from tests.simulation.ros2_control.test_plugin import ControlledRobot
 from tests.simulation.test_plugins import running_server
@@ -306,3 +308,19 @@ async def test_position_is_kept_when_world_restarts(file):
         world.server.reset()
         await world.advance(0.5)
         assert world.state[0] == pytest.approx(0.3, abs=0.01)
+
+
+@pytest.mark.parametrize("page", ["docs/control.md", "docs/zh/control.md"])
+async def test_documented_parameters_move_the_joint(page, tmp_path):
+    text = (Path(__file__).parents[3] / page).read_text("utf-8")
+    (block,) = (block for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) if "gazebo_ros_control" in block)
+    path = tmp_path / "controllers.yaml"
+    path.write_text(block)
+    description = urdf("effort", f"<parameters>{path}</parameters>").replace("swing", "elbow")
+    async with arm(description) as (world, _):
+        await world.start_controllers("elbow_controller")
+        publisher = world.node.create_publisher("std_msgs/msg/Float64", "/elbow_controller/command", 10)
+        publisher.publish(publisher.msg_type(data=-0.3))
+        await world.advance(3.0)
+        assert world.server.simulation.joint_state("arm::elbow")[0] == pytest.approx(-0.3, abs=0.01)
+        assert gains_of_namespace([str(path)], "/") == {"wrist.p": 50.0, "wrist.d": 5.0}
