@@ -10,6 +10,7 @@ import pytest
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import LogLevel
 from linkwright.sdf.from_urdf import model_from_robot
+from tests.simulation.ros2_control.test_plugin import ControlledRobot
 from tests.simulation.test_plugins import SECOND, running_server
 from tests.simulation.worlds import GROUND, box
 
@@ -142,6 +143,19 @@ async def test_gains_are_shared_with_gazebo_ros_control(tmp_path):
     )
     async with running(gripper("<hasPID/>", others=control)) as robot:
         assert 0.0 < robot.close(0.5, 0.05) < 0.45
+
+
+async def test_transmission_does_not_hold_a_joint_that_follows():
+    transmission = (
+        "<transmission name='t'><type>transmission_interface/SimpleTransmission</type><joint name='right_joint'>"
+        "<hardwareInterface>PositionJointInterface</hardwareInterface></joint></transmission>"
+    )
+    control = '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
+    text = gripper("", others=transmission + control)
+    async with running(text) as robot:
+        await ControlledRobot(robot.server, robot.server.node.graph).describe(text)
+        assert robot.server.plugins("gripper")[1]._systems
+        assert robot.close(0.4) == pytest.approx(0.4, abs=0.01)
 
 
 async def test_gains_may_be_written_in_the_plugin():

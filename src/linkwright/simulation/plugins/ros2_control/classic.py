@@ -9,10 +9,10 @@ parameters take the place of the parameter server: node ``gazebo_ros_control`` h
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from linkwright.control.hardware.description import ComponentDescription, HardwareDescription
+from linkwright.control.hardware.description import ComponentDescription, HardwareDescription, MimicDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
 from linkwright.control.hardware.transmissions import hardware_from_transmissions
 from linkwright.control.motion.pid import PidGains
@@ -123,7 +123,31 @@ class ClassicControl(SimulatedManager[ClassicParameters]):
             self.node.subscribe("std_msgs/msg/Bool", parameters.e_stop_topic, self._on_emergency_stop)
 
     def _read_hardware(self, robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
-        return hardware_from_transmissions(robot)
+        """Return the hardware of the transmissions, in which joints that a plugin moves follow their leaders."""
+        hardware, findings = hardware_from_transmissions(robot)
+        leaders = self._leaders_by_follower()
+        return [
+            replace(
+                system,
+                joints=tuple(
+                    replace(joint, mimic=joint.mimic or MimicDescription(leaders[joint.name]))
+                    if joint.name in leaders
+                    else joint
+                    for joint in system.joints
+                ),
+            )
+            for system in hardware
+        ], findings
+
+    def _leaders_by_follower(self) -> dict[str, str]:
+        """Return the joint that each joint follows by a mimic joint plugin of the model."""
+        elements = [plugin.element for plugin in self.context.model.plugins] if self.context.model is not None else []
+        pairs = [(element.first("mimicJoint"), element.first("joint")) for element in elements if element is not None]
+        return {
+            follower.text().strip(): leader.text().strip()
+            for follower, leader in pairs
+            if follower is not None and leader is not None
+        }
 
     def _update_rate(self, values: dict[str, Any]) -> float:
         """Return the rate of ``<controlPeriod>``, of the manager's parameter, or of the simulation's steps."""
