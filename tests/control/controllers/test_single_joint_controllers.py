@@ -137,6 +137,18 @@ def test_trajectory_controller_commands_the_interface_in_its_name(stand, interfa
     assert list(controller.state_interfaces()) == ["hip/position", "hip/velocity"]
 
 
+@pytest.mark.parametrize("topic", ["command", "joint_trajectory"])
+async def test_trajectory_controller_accepts_trajectories_on_both_topics(stand, topic):
+    stand.joint("hip", commands=("position",), position=0.0, velocity=0.0)
+    kind = controller_class("position_controllers/JointTrajectoryController")
+    controller = stand.start(kind, joints=["hip"])
+    point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[0.5])
+    message = get_message("trajectory_msgs/msg/JointTrajectory")(joint_names=["hip"], points=[point])
+    stand.publish("trajectory_msgs/msg/JointTrajectory", f"/controller/{topic}", message)
+    await stand.step(controller, count=3)
+    assert stand.commands["hip/position"].value == pytest.approx(0.5)
+
+
 def test_joint_state_controller_is_the_broadcaster():
     assert controller_class("joint_state_controller/JointStateController") is JointStateBroadcaster
 

@@ -37,19 +37,28 @@ class EffortParameters(PositionParameters):
     command_interfaces: tuple[str, ...] = parameter((EFFORT,), read_only=True, description="the command interface")
 
 
-class PositionTrajectoryController(JointTrajectoryController):
+class _ClassicTrajectoryController(JointTrajectoryController):
+    """A trajectory controller that also accepts trajectories on ``~/command``, its topic in ROS 1."""
+
+    def on_configure(self) -> None:
+        """Create the topics, the service and the action."""
+        super().on_configure()
+        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", "~/command", self._on_trajectory)
+
+
+class PositionTrajectoryController(_ClassicTrajectoryController):
     """``position_controllers/JointTrajectoryController``."""
 
     PARAMETERS = PositionParameters
 
 
-class VelocityTrajectoryController(JointTrajectoryController):
+class VelocityTrajectoryController(_ClassicTrajectoryController):
     """``velocity_controllers/JointTrajectoryController``."""
 
     PARAMETERS = VelocityParameters
 
 
-class EffortTrajectoryController(JointTrajectoryController):
+class EffortTrajectoryController(_ClassicTrajectoryController):
     """``effort_controllers/JointTrajectoryController``."""
 
     PARAMETERS = EffortParameters
