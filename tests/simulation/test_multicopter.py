@@ -155,4 +155,4 @@ async def test_rotor_with_missing_constant_is_reported() -> None:
     text = quadcopter().replace(f"<momentConstant>{MOMENT}</momentConstant><direction>", "<direction>")
     async with running_server(GROUND, text) as (_, __, log):
         (logged,) = warnings(log)
-        assert "each <rotor> needs a number in <momentConstant>" in logged
+        assert "<rotor> needs a number in <momentConstant>" in logged

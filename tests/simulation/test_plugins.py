@@ -41,9 +41,8 @@ UNSIMULATED = (
     "log-playback",
     "model-photo-shoot",
     "air-speed",
-    "buoyancy",
 )
-WITHOUT_ALTERNATIVE = ("wheel-slip", "buoyancy")
+WITHOUT_ALTERNATIVE = ("wheel-slip",)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,11 +141,13 @@ def test_plugin_without_namespace_uses_robot_namespace():
 
 
 @asynccontextmanager
-async def running_server(*parts: str, options: ServerOptions | None = None):
+async def running_server(
+    *parts: str, options: ServerOptions | None = None, step: float = 0.001, gravity: str = "0 0 -9.81"
+):
     """Run a simulation on a graph; yield the server, the graph and the log."""
     log: list[LogRecord] = []
     graph = Graph(on_log=log.append)
-    server = SimulationServer(make_simulation(*parts), graph.create_node("gazebo"), options)
+    server = SimulationServer(make_simulation(*parts, step=step, gravity=gravity), graph.create_node("gazebo"), options)
     server.start()
     yield server, graph, log
     server.close()

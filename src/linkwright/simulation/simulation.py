@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose, invert, quaternion_inverse, rotate
+from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose, cross, invert, quaternion_inverse, rotate
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
@@ -57,6 +57,7 @@ class Simulation:
         revision: the number of times that `model` and `data` were rebuilt.
         time: the simulated time since the start, in nanoseconds.
         step: the time step in nanoseconds.
+        wind: the velocity of the air in m/s, in the axes of the world.
         schedule: calls functions at simulated times.
     """
 
@@ -64,6 +65,7 @@ class Simulation:
         self._mujoco = load_mujoco()
         self.world = with_saved_state(world)
         count_links(self.world.models)
+        self.wind = self.world.wind
         self.finder = finder
         self._given_step = step
         self._meshes = MeshLibrary(finder)
@@ -134,6 +136,7 @@ class Simulation:
             finder: the finder of the other world's meshes.
         """
         old_world, self.world, self.finder = self.world, with_saved_state(world), finder
+        self.wind = self.world.wind
         self._meshes.set_finder(finder)
         self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS_PER_SECOND)
@@ -558,15 +561,19 @@ class Simulation:
         torque: Vector3 | Sequence[float] = (0.0, 0.0, 0.0),
         *,
         by: str = "",
+        at: Array | Sequence[float] | None = None,
     ) -> None:
-        """Set the force in N and the torque in N m on the center of mass of a link, in world axes.
+        """Set the force in N and the torque in N m on a link, in world axes.
 
         Force and torque act until they are set again. The forces of several callers add up; `by` identifies the caller.
+        The force acts at the point `at` of the world, or at the center of mass of the link.
         """
-        self.refresh()
-        forces = self._pushes.setdefault(link, {})
+        body, forces = self.body(link), self._pushes.setdefault(link, {})
         forces[by] = np.array((*force, *torque))
-        self.data.body(link).xfrc_applied[:] = sum(forces.values())
+        if at is not None:
+            x, y, z = (at - self.data.xipos[body]).tolist()
+            forces[by][3:] += cross((x, y, z), (force[0], force[1], force[2]))
+        self.data.xfrc_applied[body] = sum(forces.values())
 
     def set_gravity(self, gravity: Vector3) -> None:
         """Set the gravity in m/s2, in the axes of the world."""

@@ -209,8 +209,8 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             rotor_position = body_rotation.T @ (
                 np.array(simulation.link_pose(simulation.scene.joints[joint].child)[:3]) - body_pose[:3]
             )
-            force, moment = self._number(rotor, "forceConstant"), self._number(rotor, "momentConstant")
-            direction = self._number(rotor, "direction")
+            force, moment = self.number_in(rotor, "forceConstant"), self.number_in(rotor, "momentConstant")
+            direction = self.number_in(rotor, "direction")
             arm = hypot(rotor_position[0], rotor_position[1])
             moment_arm = (rotor_position[1], -rotor_position[0]) if arm else (0.0, 0.0)
             columns.append((force * moment_arm[0], force * moment_arm[1], -direction * force * moment, force))
@@ -230,15 +230,6 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         inverse_inertia = np.linalg.inv(inertia)
         self._attitude_gain = np.array(self.parameters.attitude_gain) @ inverse_inertia
         self._rate_gain = np.array(self.parameters.angular_rate_gain) @ inverse_inertia
-
-    def _number(self, rotor: Element, tag: str) -> float:
-        try:
-            return float(_text(rotor, tag))
-        except ValueError as error:
-            message = phrase(
-                "plugin '{plugin}': each <rotor> needs a number in <{tag}>", plugin=self.context.name, tag=tag
-            )
-            raise self.parameter_error(message) from error
 
     def _mass_and_inertia(self) -> tuple[float, Array]:
         """Return the model's mass in kg, and its inertia tensor in kg m2.

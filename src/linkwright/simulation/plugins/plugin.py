@@ -253,6 +253,32 @@ class SimulatedPlugin(Generic[P]):
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
+    def number_in(self, parent: Element | None, tag: str, default: float | None = None) -> float:
+        """Return the number in a child of one of the plugin's nested elements, for which `PARAMETERS` has no field.
+
+        Args:
+            parent: the nested element; None if it is absent.
+            tag: the tag of the child.
+            default: the number for an absent child; None if the child is required.
+
+        Raises:
+            LinkwrightError: SIM160, the child is absent and required, or its text is not a number.
+        """
+        child = None if parent is None else parent.first(tag)
+        if child is None and default is not None:
+            return default
+        try:
+            return float("" if child is None else child.text())
+        except ValueError as error:
+            raise self.parameter_error(
+                phrase(
+                    "plugin '{plugin}': <{parent}> needs a number in <{tag}>",
+                    plugin=self.context.name,
+                    parent="plugin" if parent is None else parent.tag,
+                    tag=tag,
+                )
+            ) from error
+
     def close(self, on_error: Callable[[Exception], object]) -> None:
         """Call `stop`, and remove the plugin's node and functions.
 

@@ -1,0 +1,1 @@
+"""Plugins for water and air: buoyancy, hydrodynamics, thrusters, wings and wind."""

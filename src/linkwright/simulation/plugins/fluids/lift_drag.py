@@ -1,0 +1,124 @@
+"""Wings, fins and blades: ``gz-sim-lift-drag-system``, and ``libLiftDragPlugin.so`` of Gazebo Classic.
+
+Lift and drag act at the center of pressure of a link that moves through the air. They grow with the dynamic pressure
+and the area, and with the angle of attack until the wing stalls. A control joint changes the lift, as a flap does.
+
+Source: gz-sim and Gazebo Classic (parameters, defaults, formulas). As there, the moments ``cma`` and ``cma_stall``
+have no effect.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import acos, pi
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Vector3
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+_MIN_SPEED = 0.01
+"""The speed in m/s up to which the air exerts no forces."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiftDragParameters:
+    """Parameters of ``gz-sim-lift-drag-system`` and ``libLiftDragPlugin.so``."""
+
+    link_name: str = parameter()
+    air_density: float = 1.2041
+    area: float = 1.0
+    a0: float = 0.0
+    cla: float = 1.0
+    cda: float = 0.01
+    alpha_stall: float = pi / 2
+    cla_stall: float = 0.0
+    cda_stall: float = 1.0
+    cp: Vector3 = (0.0, 0.0, 0.0)
+    forward: Vector3 = (1.0, 0.0, 0.0)
+    upward: Vector3 = (0.0, 0.0, 1.0)
+    radial_symmetry: bool = False
+    control_joint_name: str = ""
+    control_joint_rad_to_cl: float = 4.0
+
+
+class LiftDrag(SimulatedPlugin[LiftDragParameters]):
+    """The substitute for ``gz-sim-lift-drag-system`` and ``libLiftDragPlugin.so``."""
+
+    PARAMETERS = LiftDragParameters
+    IGNORED = ("cma", "cma_stall", "cm_delta")
+
+    def start(self) -> None:
+        """Find the link and the control joint.
+
+        Raises:
+            LinkwrightError: SIM133, SIM134, there is no such link or joint.
+        """
+        parameters = self.parameters
+        self._link = self.link(parameters.link_name)
+        self._control_joint = self.joint(parameters.control_joint_name) if parameters.control_joint_name else ""
+        self._forward, self._upward = _unit(np.array(parameters.forward)), _unit(np.array(parameters.upward))
+        self.simulation.keep_awake(self._link)
+        self.every(0.0, self._apply_forces)
+        self._apply_forces()
+
+    def stop(self) -> None:
+        """Remove the force."""
+        if self._link in self.simulation.scene.bodies:
+            self.simulation.push(self._link, (0.0, 0.0, 0.0), by=self.context.name)
+
+    def _apply_forces(self) -> None:
+        simulation = self.simulation
+        body, data = simulation.body(self._link), simulation.data
+        rotation = data.xmat[body].reshape(3, 3)
+        offset = rotation @ np.array(self.parameters.cp)
+        linear, angular = simulation.link_velocity(self._link)
+        force = self._force(rotation, linear + np.cross(angular, offset) - np.array(simulation.wind))
+        simulation.push(self._link, force.tolist(), at=data.xpos[body] + offset, by=self.context.name)
+
+    def _force(self, rotation: Array, velocity: Array) -> Array:
+        """Return the force in N, in the axes of the world.
+
+        Args:
+            rotation: the orientation of the link, shape (3, 3).
+            velocity: the velocity of the center of pressure relative to the air, in m/s and the axes of the world.
+        """
+        parameters = self.parameters
+        forward = rotation @ self._forward
+        if np.linalg.norm(velocity) <= _MIN_SPEED or forward @ velocity <= 0.0:
+            return np.zeros(3)
+        upward = rotation @ self._upward
+        if parameters.radial_symmetry:
+            upward = _unit(np.cross(forward, np.cross(forward, velocity)))
+        spanwise = _unit(np.cross(forward, upward))
+        sweep_factor = 1.0 - float(spanwise @ _unit(velocity)) ** 2
+        in_plane = velocity - velocity @ spanwise * spanwise
+        lift_direction = _unit(np.cross(spanwise, in_plane))
+        angle = acos(min(max(float(lift_direction @ upward), -1.0), 1.0))
+        attack = parameters.a0 + (angle if lift_direction @ forward >= 0.0 else -angle)
+        attack = (attack + pi / 2) % pi - pi / 2
+        lift, drag = (sweep_factor * coefficient for coefficient in self._coefficients(attack))
+        if self._control_joint:
+            lift += parameters.control_joint_rad_to_cl * self.simulation.joint_state(self._control_joint)[0]
+        pressure = 0.5 * parameters.air_density * float(in_plane @ in_plane)
+        force: Array = pressure * parameters.area * (lift * lift_direction - drag * _unit(in_plane))
+        return force
+
+    def _coefficients(self, attack: float) -> tuple[float, float]:
+        """Return the coefficients of lift and drag for an angle of attack in rad."""
+        parameters = self.parameters
+        size, sign = abs(attack), 1.0 if attack > 0.0 else -1.0
+        below, beyond = min(size, parameters.alpha_stall), max(size - parameters.alpha_stall, 0.0)
+        lift = parameters.cla * below + parameters.cla_stall * beyond
+        drag = parameters.cda * below + parameters.cda_stall * beyond
+        if beyond > 0.0:
+            lift = max(lift, 0.0)
+        return sign * lift, abs(drag)
+
+
+def _unit(vector: Array) -> Array:
+    """Return a vector's direction, or zero for a zero vector."""
+    length = float(np.linalg.norm(vector))
+    return vector / length if length > 0.0 else vector
