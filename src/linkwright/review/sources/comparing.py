@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from functools import cached_property
@@ -17,6 +17,8 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Probl
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.changed_values import value_changes
+from linkwright.review.sources.code import Code, read_code
+from linkwright.review.sources.code_changes import code_change
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
@@ -28,7 +30,7 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.package_imports import failing_imports, is_installed_package
-from linkwright.review.sources.reading import is_program_text, read_source_names
+from linkwright.review.sources.reading import is_program_text, read_source_names, readable_source
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -97,6 +99,28 @@ class _Side:
     def names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+
+    @cached_property
+    def codes(self) -> Mapping[str, Code]:
+        """The code of the changed sources, by path."""
+        sources = {path: readable_source(self.version.file(path)) for path in self._names}
+        return {path: read_code(source) for path, source in sources.items() if source is not None}
+
+    def has_function(self, name: str, code: Code, path: str) -> bool:
+        """Return whether another changed source has a function with the same name and code.
+
+        Args:
+            name: the function with its class.
+            code: the code that has the function.
+            path: the path of the source that is not searched.
+        """
+        short, body = re.split(r"\.|::", name)[-1], code.body(name)
+        return any(
+            re.split(r"\.|::", each)[-1] == short and other.body(each) == body
+            for other_path, other in self.codes.items()
+            if other_path != path
+            for each in other.functions
+        )
 
     @cached_property
     def _known(self) -> frozenset[tuple[NameKind, str]]:
@@ -185,11 +209,28 @@ class _Pair:
         changes = [change for kind in NameKind for change in self._changes_of(kind, old_names, new_names)]
         changes += self._rate_changes(old_names, new_names)
         changes += self._import_changes(old_names, new_names)
-        yield from changes
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
-            for text, span in value_changes(old_path, new_path, [str(change.sentence) for change in changes]):
-                yield self._change(text, span, self.new, None)
+            told = [str(change.sentence) for change in changes]
+            values = value_changes(old_path, new_path, told)
+            changes += [self._change(text, span, self.new, None) for text, span in values]
+            changes += self._code_changes(self.file.old_path, self.file.new_path, changes)
+        yield from changes
+
+    def _code_changes(self, old_path: str, new_path: str, told: Sequence[Change]) -> Iterator[Change]:
+        """Yield the functions whose code changes, if other lines do not tell it."""
+        old, new = self.old.codes.get(old_path), self.new.codes.get(new_path)
+        if not old or not new:
+            return
+
+        def has_moved(name: str, code: Code) -> bool:
+            side, path = (self.new, new_path) if code is old else (self.old, old_path)
+            return side.has_function(name, code, path)
+
+        change = code_change(old, new, told, has_moved, self.new.names(new_path))
+        if change is not None:
+            location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
+            yield Change(change.text, location=location)
 
     def problems(self) -> Iterator[Problem]:
         """Yield the reason why the names of one version are not known, if that of the other version are."""

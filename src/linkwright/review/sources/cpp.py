@@ -57,6 +57,7 @@ _NODE = re.compile(
 )
 _INIT = re.compile(r"\bros::init\s*\(")
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
+_POINTER = re.compile(r"&\s*(?:\w+::)+(\w+)")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
@@ -203,6 +204,15 @@ class _Reader:
         if namespace and name and not name.startswith(("/", "~")):
             name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
         self._add(kind, name, *found, type_name, tuple(details))
+        if kind in (NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION):
+            self._add_callback(kind, name, arguments)
+
+    def _add_callback(self, kind: NameKind | None, name: str, arguments: list[tuple[int, int]]) -> None:
+        """Add the member function that messages, requests, goals or a timer call, if it is the only one."""
+        text = self._text[arguments[0][0] : arguments[-1][1]]
+        functions = set(_POINTER.findall(text))
+        if len(functions) == 1:
+            self._names.callbacks.setdefault(functions.pop(), (kind, name))
 
     def _default(self, function: str, arguments: list[tuple[int, int]]) -> str:
         """Return the literal default of a parameter; that of a function that returns the value is the second."""
@@ -235,6 +245,8 @@ class _Reader:
         if index < len(texts):
             name = match["name"].split()[0]
             self._names.rates.append((f"{name}({texts[index]})", self._span(*arguments[index])))
+            if "imer" in name:
+                self._add_callback(None, "", arguments)
 
     def _value(self, begin: int, end: int) -> str | None:
         """Return the text of a literal or of a constant of the source, or None for another expression."""

@@ -95,6 +95,8 @@ class SourceNames:
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
         is_error_certain: whether the syntax error is one in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
+        callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
+            a timer.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
@@ -106,6 +108,7 @@ class SourceNames:
     error_line: int = 0
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
+    callbacks: dict[str, tuple[NameKind | None, str]] = field(default_factory=dict)
     has_star: bool = False
 
     def add(self, name: SourceName) -> None:

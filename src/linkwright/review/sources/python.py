@@ -37,6 +37,12 @@ _NODE_FIRST = {
     "Subscriber": NameKind.SUBSCRIPTION,
 }
 """The classes of ROS 2 whose first three arguments are the node, the type and the name."""
+_WITH_CALLBACK = {
+    NameKind.SUBSCRIPTION: "callback",
+    NameKind.SERVICE: "handler",
+    NameKind.ACTION: "execute_cb",
+}
+"""The kinds of names with a callback as their third argument, and its name in ROS 1."""
 _NODES = ("init_node", "create_node", "Node", "LifecycleNode")
 _RATES = {"Rate": 0, "create_rate": 0, "Timer": 0, "create_timer": 0}
 _LOOKUPS = {
@@ -232,8 +238,12 @@ class _Reader:
             kind, type_keyword, name_keyword, qos_index = _RCLPY[function]
             qos = self._qos(_argument(call, qos_index, "qos_profile"))
             self._add(kind, _argument(call, 1, name_keyword), _argument(call, 0, type_keyword), qos)
+            if kind in _WITH_CALLBACK:
+                self._add_callback(kind, _argument(call, 1, name_keyword), _argument(call, 2, "callback"))
         elif function in _NODE_FIRST and len(call.args) > 2 and self._python.text(call.args[0]) is None:
             self._add(_NODE_FIRST[function], _argument(call, 2, "action_name"), _argument(call, 1, "action_type"))
+            if _NODE_FIRST[function] is NameKind.ACTION:
+                self._add_callback(NameKind.ACTION, call.args[2], _argument(call, 3, "execute_callback"))
         elif function in _NAME_FIRST and (call.args or call.keywords):
             self._read_ros1_call(call, function)
         elif function in _PARAMETER_CALLS:
@@ -256,13 +266,18 @@ class _Reader:
             value = argument_of(call, keyword)
             if isinstance(value, ast.Constant) and value.value not in (None, False):
                 details.append((detail, YES if value.value is True else str(value.value)))
-        self._add(_NAME_FIRST[function], name, types, tuple(details))
+        kind = _NAME_FIRST[function]
+        self._add(kind, name, types, tuple(details))
+        if kind in _WITH_CALLBACK:
+            self._add_callback(kind, name, _argument(call, 2, _WITH_CALLBACK[kind]))
 
     def _read_other_call(self, call: ast.Call, function: str) -> None:
         if function in _RATES and called_name(call).partition(".")[0] != "threading" and call.args:
             period = self._python.resolved(call.args[0])
             text = f"{function}({_shown(self._python, period)})"
             self._names.rates.append((text, self._python.span(call.args[0])))
+            if "imer" in function:
+                self._add_callback(None, None, _argument(call, 1, "callback"))
         elif function in _LOOKUPS:
             for index in _LOOKUPS[function]:
                 if index < len(call.args):
@@ -272,6 +287,14 @@ class _Reader:
                 self._add_frame(NameKind.FRAME, call.args[index])
         elif function in ("add_argument", "add_option"):
             self._read_option(call)
+
+    def _add_callback(self, kind: NameKind | None, name: ast.expr | None, callback: ast.expr | None) -> None:
+        """Add the function that messages, requests, goals or a timer call, if its name and that of these are known."""
+        text = self._python.text(name)
+        is_known = text is not None or kind is None
+        if isinstance(callback, (ast.Name, ast.Attribute)) and is_known:
+            function = callback.id if isinstance(callback, ast.Name) else callback.attr
+            self._names.callbacks.setdefault(function, (kind, text or ""))
 
     def _read_option(self, call: ast.Call) -> None:
         texts = [text for text in map(self._python.text, call.args) if text]
