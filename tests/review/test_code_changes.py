@@ -194,3 +194,50 @@ def test_the_line_is_that_of_the_first_statement_that_differs(repository, compar
 def test_a_class_in_cpp_may_have_a_macro_before_or_behind_its_name(lines):
     text = "class ARM_PUBLIC Tool ARM_FINAL : public Base {\n  int size() { return 1 + x; }\n};\n"
     assert lines("arm/src/tool.hpp", text, text.replace("+ x", "+ y")) == ["code changed in 'Tool::size()'"]
+
+
+USER = """import math
+from std_msgs.msg import String
+
+
+def half(value: String) -> None:
+    send(String(math.floor(value / 2)))
+
+
+def send(text):
+    try:
+        show(text)
+    except NameError:
+        pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("import math\n", "", "'math' is used, but nothing defines or imports it any more"),
+        ("def send(text)", "def post(text)", "'send' is used, but nothing defines or imports it any more"),
+    ],
+)
+def test_a_name_that_nothing_defines_any_more_is_breaking(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/scripts/half.py": USER})
+    repository.write({"arm/scripts/half.py": USER.replace(old, new)})
+    assert breaking(compare(repository)) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("import math\n", "from numpy import *\n"),
+        ("import math\n", "math = None\n"),
+        ("show(text)", "view(text)"),
+        ("value: String", "value: Text"),
+        ("value / 2", "unicode(value) / 2"),
+        ("value / 2", "[item for item in value][0]"),
+        ("import math\n", "print 'a'\n"),
+    ],
+)
+def test_a_name_that_may_be_defined_is_not_breaking(repository, compare, old, new):
+    repository.commit({**MANIFEST, "arm/scripts/half.py": USER})
+    repository.write({"arm/scripts/half.py": USER.replace(old, new)})
+    assert breaking(compare(repository)) == []

@@ -60,7 +60,7 @@ def code_change(
     added = [name for name in new.functions if name not in old.functions and not has_moved(name, new)]
     pairs = [(name, name) for name in new.functions if name in old.functions]
     renamed = []
-    for old_name, new_name in _renamed(old, new, removed, added):
+    for old_name, new_name in _renamed(old, new, removed, added, lines):
         removed.remove(old_name)
         added.remove(new_name)
         is_same_name = _short(old_name) == _short(new_name)
@@ -132,7 +132,7 @@ def _short(name: str) -> str:
     return re.split(r"\.|::", name)[-1]
 
 
-def _renamed(old: Code, new: Code, removed: Sequence[str], added: Sequence[str]) -> list[tuple[str, str]]:
+def _renamed(old: Code, new: Code, removed: Sequence[str], added: Sequence[str], lines: _Told) -> list[tuple[str, str]]:
     """Return the functions with the same code and another name, and those of a class with another name."""
     pairs = []
     rest = list(added)
@@ -145,6 +145,7 @@ def _renamed(old: Code, new: Code, removed: Sequence[str], added: Sequence[str])
             for each in rest
             if is_class_gone
             and _short(each) == short
+            and (not lines.names(each) or lines.renames(name, each))
             and not any(other.startswith(each[: -len(short)] or each) for other in old.functions)
         ]
         best = next((each for each in [*same, *moved] if _short(each) == short), None) or next(iter(same), None)
@@ -174,6 +175,7 @@ class _Told:
 
     def __init__(self, changes: Sequence[Change]) -> None:
         self._names = {name for change in changes for name in _QUOTED.findall(str(change.sentence))}
+        self._text = "\n".join(str(change.sentence) for change in changes)
         self._functions = {
             str(change.sentence.arguments["name"]) for change in changes if change.sentence.template == _VALUES
         }
@@ -186,8 +188,16 @@ class _Told:
         """Return whether a line names a function, or its class."""
         return any(each in self._names for each in _scopes(function))
 
+    def renames(self, old: str, new: str) -> bool:
+        """Return whether a line tells that the class of a function has another name."""
+        pairs = zip(_scopes(old), _scopes(new), strict=False)
+        patterns = (rf"'{re.escape(a)}'[^'\n]* renamed to '{re.escape(b)}'" for a, b in pairs)
+        return any(re.search(pattern, self._text) for pattern in patterns)
+
     def leaves(self, old: Sequence[Part], new: Sequence[Part], name: str) -> bool:
         """Return whether the code of a function differs, and not only in what other lines tell."""
+        if re.search(rf"'{_class(name)}': .*\(", self._text):
+            old, new = old[1:], new[1:]  # a line has the arguments of the constructor
         before, after = _texts(old), _texts(new)
         if before == after:
             return False
@@ -209,6 +219,12 @@ class _Told:
             if not literals.isdisjoint(self._names):
                 return True
         return has_values and [_shape(part.text) for part in old] == [_shape(part.text) for part in new]
+
+
+def _class(name: str) -> str:
+    """Return the class of a constructor, or a text that no class is for another function."""
+    parts = re.split(r"\.|::", name)
+    return re.escape(parts[-2]) if len(parts) > 1 and parts[-1] == "__init__" else "-"
 
 
 @lru_cache(maxsize=4096)

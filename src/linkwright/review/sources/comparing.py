@@ -35,6 +35,8 @@ from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SKIPPED = frozenset({"setup.py", "conf.py"})
+_MAX_ARGUMENTS = 80
+"""The number of characters up to which the arguments of an added function or class are shown."""
 _MAX_FUNCTIONS = 3
 """The number of functions of a file with other arguments up to which each has a line."""
 _UNITS = re.compile(
@@ -209,6 +211,7 @@ class _Pair:
         changes = [change for kind in NameKind for change in self._changes_of(kind, old_names, new_names)]
         changes += self._rate_changes(old_names, new_names)
         changes += self._import_changes(old_names, new_names)
+        changes += self._undefined_changes(old_names, new_names)
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
             told = [str(change.sentence) for change in changes]
@@ -261,13 +264,8 @@ class _Pair:
         after = {_key(item): item for item in new_names.of(kind)}
         changed = [(item, *each) for name, item in after.items() if name in before
                    for each in detail_changes(before[name], item)]  # fmt: skip
-        if kind is NameKind.FUNCTION and not self._is_interface(self.file.old_path or self.file.path):
-            changed = []
-        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
-            yield self._merged_functions(changed)
-            changed = []
-        for item, text, reason in changed:
-            yield self._change(text, item.span, self.new, reason)
+        yield from self._detail_changes(kind, changed, old_names)
+        is_python = self.file.path.endswith(PYTHON_SUFFIX)
         path = self.file.path
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
@@ -276,7 +274,8 @@ class _Pair:
             is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
-        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not self._is_interface(old_path):
+        is_told = kind is NameKind.CLASS and is_python
+        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not is_told and not self._is_interface(old_path):
             return
         if kind is NameKind.IMPORT:
             if None in (self.file.old_path, self.file.new_path) or not is_installed_package(
@@ -298,6 +297,21 @@ class _Pair:
         yield from self._expression_changes(kind, removed, added)
         yield from self._lone_changes(kind, removed, added, old_names)
 
+    def _detail_changes(
+        self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames
+    ) -> Iterator[Change]:
+        """Yield the changes of names that both versions have; those of functions only if others can call them."""
+        is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
+        is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
+        if kind is NameKind.FUNCTION and not is_called:
+            return
+        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
+            yield self._merged_functions(changed)
+            return
+        for item, text, reason in changed:
+            is_breaking = is_called or kind is not NameKind.CLASS
+            yield self._change(text, item.span, self.new, reason if is_breaking else None)
+
     def _merged_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
         """Return one change for many functions with other arguments."""
         names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), MAX_NAMES)
@@ -305,6 +319,8 @@ class _Pair:
         reason = next((reason for _, _, reason in changed if reason is not None), None)
         if reason is not None:
             reason = phrase("code that calls them with the old arguments does not build")
+            if self.file.path.endswith(PYTHON_SUFFIX):
+                reason = phrase("programs that call them with the old arguments fail")
         return self._change(text, changed[0][0].span, self.new, reason)
 
     def _is_interface(self, path: str) -> bool:
@@ -328,7 +344,10 @@ class _Pair:
             yield self._change(text, removed[0].span, self.old, self._reason(removed, old_names))
 
     def _reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
-        return removal_reason(items, names, self.file.old_path or self.file.path)
+        path = self.file.old_path or self.file.path
+        if items[0].kind is NameKind.CLASS and not self._is_interface(path):
+            return None
+        return removal_reason(items, names, path)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
@@ -391,6 +410,13 @@ class _Pair:
                 text = phrase("absolute import of '{name}', a module of the same package", name=name)
                 yield self._change(text, span, self.new, phrase("the package cannot be imported once it is installed"))
 
+    def _undefined_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the names that are still used, but not defined or imported any more."""
+        for name, span in new_names.undefined.items() if self.file.old_path is not None else ():
+            if name in old_names.bound:
+                text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
+                yield self._change(text, span, self.new, phrase("the code that uses the name fails"))
+
     @staticmethod
     def _change(text: Phrase, span: Span, side: _Side, reason: Phrase | None) -> Change:
         path = side.version.relative(span.file)
@@ -410,7 +436,10 @@ def _is_number(rate: str) -> bool:
 
 
 def _name(item: SourceName) -> str:
-    """Return a name with the type of its messages, or the default of a parameter."""
+    """Return a name with the type of its messages, the default of a parameter, or the arguments of a function."""
+    arguments = dict(item.details).get(Detail.ARGUMENTS, "()")
+    if arguments != "()" and len(arguments) <= _MAX_ARGUMENTS:
+        return f"'{item.name}' {arguments}"
     return f"'{item.name}' ({item.type})" if item.type else f"'{item.name}'"
 
 

@@ -13,6 +13,8 @@ from linkwright.packages.readers.python_values import PythonFile, Value, argumen
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.python2 import as_python3
+from linkwright.review.sources.signatures import signature_of
+from linkwright.review.sources.undefined_names import bound_names, undefined_names
 
 _RCLPY = {
     "create_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
@@ -64,6 +66,9 @@ def read_python(source: SourceText, names: SourceNames) -> None:
     """
     python = parsed_source(source)
     _Reader(python, names).read()
+    if python.source is source:  # not one that only Python 2 can parse
+        names.bound = frozenset(bound_names(python.tree))
+        names.undefined.update((name, python.span(node)) for name, node in undefined_names(python.tree).items())
     if PurePosixPath(source.name).name == PACKAGE_FILE:
         read_imports(python, names)
 
@@ -203,7 +208,9 @@ class _Reader:
         for statement in tree.body:
             if isinstance(statement, (ast.ClassDef, ast.FunctionDef)) and not statement.name.startswith("_"):
                 kind = NameKind.CLASS if isinstance(statement, ast.ClassDef) else NameKind.FUNCTION
-                self._names.add(SourceName(kind, statement.name, "", self._python.span(statement)))
+                signature = signature_of(statement)
+                details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
+                self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
 
