@@ -141,3 +141,31 @@ def test_a_class_in_a_folder_that_is_no_package_is_told_and_not_breaking(reposit
         "classes removed: 'Grip' (force)",
     ]
     assert breaking(result) == []
+
+
+SETUP = "from setuptools import setup\nsetup(name='arm', version='1.0.0', packages=['arm'])\n"
+METHODS = "class Plan:\n    def __init__(self):\n        f(self.on_end)\n\n    def run(self, goal):\n        pass\n\n"
+METHODS += "    def on_end(self):\n        pass\n\n    def _own(self):\n        pass\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("def run(self, goal)", "def run(self, goal, time)",
+         "function 'Plan.run': arguments (goal) -> (goal, time)", True),
+        ("def run(self, goal)", "def run(self, goal, time=1)",
+         "function 'Plan.run': arguments (goal) -> (goal, time=1)", False),
+        ("def run(self, goal)", "def runs(self, goal)",
+         "function 'Plan.run' (goal) renamed to 'Plan.runs' (goal)", True),
+        ("    def run(self, goal):\n        pass\n\n", "", "functions removed: 'Plan.run' (goal)", True),
+        ("    def on_end(self):\n        pass\n", "", "code removed: 'Plan.on_end()'", False),
+        ("    def _own(self):\n        pass\n", "", "code removed: 'Plan._own()'", False),
+        ("class Plan:", "class Plan(Base):", "code changed in 'Plan'", False),
+    ],
+)  # fmt: skip
+def test_methods_of_an_installed_class_are_told(repository, compare, old, new, expected, is_breaking):
+    repository.commit({**FILES, "arm/setup.py": SETUP, "arm/arm/plans.py": METHODS})
+    repository.write({"arm/arm/plans.py": METHODS.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/arm/plans.py")) == [expected]
+    assert bool(breaking(result)) is is_breaking

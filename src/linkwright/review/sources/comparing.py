@@ -29,7 +29,7 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
-from linkwright.review.sources.package_imports import failing_imports, is_installed_package
+from linkwright.review.sources.package_imports import failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.reading import is_program_text, read_source_names, readable_source
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -287,6 +287,11 @@ class _Pair:
             classes = [{item.name for item in names.of(NameKind.CLASS)} for names in (old_names, new_names)]
             removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
             added = [item for item in added if _has_class(item, classes[0] & classes[1])]
+        if kind is NameKind.FUNCTION and is_python:
+            is_installed = is_installed_module(self.old.version, self.old.package(old_path), old_path)
+            plain = old_names.plain_classes & new_names.plain_classes if is_installed else set()
+            removed = [item for item in removed if _is_of(item, plain)]
+            added = [item for item in added if _is_of(item, plain)]
         for old_item, new_item in _renamed(removed, added):
             text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
             is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
@@ -467,6 +472,12 @@ def _has_class(function: SourceName, classes: Collection[str]) -> bool:
     """Return whether a function of C++ is in one of the classes, or in none."""
     names = function.name.split("::")[:-1]
     return not names or names[-1] in classes
+
+
+def _is_of(function: SourceName, classes: Collection[str]) -> bool:
+    """Return whether a function of Python is a method of one of the classes, or of none."""
+    class_name, _, _ = function.name.rpartition(".")
+    return not class_name or class_name in classes
 
 
 def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:

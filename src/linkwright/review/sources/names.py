@@ -98,6 +98,7 @@ class SourceNames:
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
         callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
             a timer.
+        plain_classes: the classes of a source in Python that certainly have no methods besides those in their bodies.
         bound: the names that a source in Python 3 defines or imports.
         undefined: the names that a source uses although nothing defines them, each with the location of its first use.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
@@ -112,6 +113,7 @@ class SourceNames:
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
     callbacks: dict[str, tuple[NameKind | None, str]] = field(default_factory=dict)
+    plain_classes: set[str] = field(default_factory=set)
     bound: frozenset[str] = frozenset()
     undefined: dict[str, Span] = field(default_factory=dict)
     has_star: bool = False

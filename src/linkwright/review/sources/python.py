@@ -13,7 +13,7 @@ from linkwright.packages.readers.python_values import PythonFile, Value, argumen
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.python2 import as_python3
-from linkwright.review.sources.signatures import signature_of
+from linkwright.review.sources.signatures import is_plain, method_signatures, signature_of
 from linkwright.review.sources.undefined_names import bound_names, undefined_names
 
 _RCLPY = {
@@ -211,8 +211,21 @@ class _Reader:
                 signature = signature_of(statement)
                 details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
                 self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
+                if isinstance(statement, ast.ClassDef) and is_plain(statement):
+                    self._read_methods(statement)
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
+
+    def _read_methods(self, definition: ast.ClassDef) -> None:
+        """Add the public methods of a class, except those that the source passes to others, such as callbacks."""
+        nodes = list(ast.walk(definition))
+        called = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
+        passed = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called}
+        self._names.plain_classes.add(definition.name)
+        for method, signature in method_signatures(definition):
+            if method.name not in passed:
+                name, details = f"{definition.name}.{method.name}", ((Detail.ARGUMENTS, signature.text),)
+                self._names.add(SourceName(NameKind.FUNCTION, name, "", self._python.span(method), details))
 
     def _read_assignment(self, node: ast.Assign) -> None:
         for target in node.targets:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import copy
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 
@@ -60,6 +61,24 @@ class Signature:
 _NONE = Signature("()", (), 0, 0, (), (), has_rest=False, has_keywords=False)
 
 
+def is_plain(definition: ast.ClassDef) -> bool:
+    """Return whether a class certainly has no other methods than those in its body."""
+    bases = [ast.unparse(base) for base in definition.bases]
+    names = {node.name for node in definition.body if isinstance(node, ast.FunctionDef)}
+    is_bare = not definition.decorator_list and not definition.keywords
+    return is_bare and bases in ([], ["object"]) and "__getattr__" not in names
+
+
+def method_signatures(definition: ast.ClassDef) -> Iterator[tuple[ast.FunctionDef, Signature]]:
+    """Yield the public methods of a class without base classes, with their parameters; not those with decorators."""
+    if not is_plain(definition):
+        return
+    for node in definition.body:
+        is_public = isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
+        if isinstance(node, ast.FunctionDef) and is_public and not node.decorator_list and node.args.args:
+            yield node, _signature(node.args, first=1)
+
+
 def signature_of(definition: ast.stmt) -> Signature | None:
     """Return the parameters of a function, or of the constructor of a class, or None if they are not certain."""
     if isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)) and not definition.decorator_list:
@@ -70,10 +89,9 @@ def signature_of(definition: ast.stmt) -> Signature | None:
     if "__new__" in methods:
         return None
     if "__init__" in methods:
-        is_plain = not methods["__init__"].decorator_list
-        return _signature(methods["__init__"].args, first=1) if is_plain else None
-    bases = [ast.unparse(base) for base in definition.bases]
-    return _NONE if bases in ([], ["object"]) else None
+        is_certain = not methods["__init__"].decorator_list
+        return _signature(methods["__init__"].args, first=1) if is_certain else None
+    return _NONE if is_plain(definition) else None
 
 
 def parsed_signature(text: str) -> Signature | None:
