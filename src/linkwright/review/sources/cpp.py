@@ -57,6 +57,7 @@ _NODE = re.compile(
 )
 _INIT = re.compile(r"\bros::init\s*\(")
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
+_RECONFIGURATION = re.compile(r"\bdynamic_reconfigure\s*::\s*Server\s*<\s*(?:\w+\s*::\s*)*(?P<name>\w+)\s*>")
 _POINTER = re.compile(r"&\s*(?:\w+::)+(\w+)")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
@@ -122,6 +123,8 @@ class _Reader:
         self._read_members()
         for match in _RATE.finditer(text):
             self._read_rate(match)
+        for match in _RECONFIGURATION.finditer(text):
+            self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
         for match in _COMPONENT.finditer(text):
             for begin, end in list(_arguments(text, match.end() - 1))[:1]:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)

@@ -45,6 +45,7 @@ _WITH_CALLBACK = {
     NameKind.ACTION: "execute_cb",
 }
 """The kinds of names with a callback as their third argument, and its name in ROS 1."""
+_ROUTES = ("route", "get", "post", "put", "delete", "patch", "websocket")
 _NODES = ("init_node", "create_node", "Node", "LifecycleNode")
 _RATES = {"Rate": 0, "create_rate": 0, "Timer": 0, "create_timer": 0}
 _LOOKUPS = {
@@ -205,6 +206,9 @@ class _Reader:
                 if isinstance(node.func, ast.Attribute) and function == "":
                     function = node.func.attr
                 self._read_call(node, function)
+        for part in ast.walk(tree):
+            if isinstance(part, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                self._read_decorators(part)
         for statement in tree.body:
             if isinstance(statement, (ast.ClassDef, ast.FunctionDef)) and not statement.name.startswith("_"):
                 kind = NameKind.CLASS if isinstance(statement, ast.ClassDef) else NameKind.FUNCTION
@@ -215,6 +219,20 @@ class _Reader:
                     self._read_methods(statement)
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
+
+    def _read_decorators(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+        """Add the routes of a web server, and the events of Socket.IO, that call a function."""
+        for decorator in function.decorator_list:
+            text = self._python.text(decorator.args[0]) if isinstance(decorator, ast.Call) and decorator.args else None
+            if not isinstance(decorator, ast.Call) or text is None:
+                continue
+            method = called_name(decorator).rpartition(".")[2]
+            kind = NameKind.ROUTE if method in _ROUTES and text.startswith("/") else None
+            if method == "on" and "socketio" in self._python.source.text:
+                kind = NameKind.WEB_EVENT
+            if kind is not None:
+                self._add(kind, decorator.args[0], None)
+                self._names.callbacks[function.name] = (kind, text)
 
     def _read_methods(self, definition: ast.ClassDef) -> None:
         """Add the public methods of a class, except those that the source passes to others, such as callbacks."""
@@ -305,6 +323,9 @@ class _Reader:
         elif function == "sendTransform" and len(call.args) == 5:
             for index in (3, 4):
                 self._add_frame(NameKind.FRAME, call.args[index])
+        elif function == "Server" and len(call.args) > 1 and ast.unparse(call.args[0]).endswith("Config"):
+            name = ast.unparse(call.args[0]).rpartition(".")[2]
+            self._names.add(SourceName(NameKind.RECONFIGURATION, name, "", self._python.span(call)))
         elif function in ("add_argument", "add_option"):
             self._read_option(call)
 
