@@ -93,6 +93,7 @@ def lines(repository, compare):
         ("def clamp", "def half(x):\n    return x / 2\n\n\ndef clamp", "code added: 'half()'"),
         ("\n    def reach(self, goal):\n        goal.succeed()\n", "", "code removed: 'Driver.reach()'"),
         ("limit(1)", "limits()", "code changed in 'Driver'"),
+        ("class Driver", "import os\n\n\nclass Driver", "imports added: 'import os'"),
         ("class Driver", "setup()\n\n\nclass Driver", "code changed outside of functions"),
     ],
 )  # fmt: skip
@@ -110,7 +111,6 @@ def test_functions_of_python_with_other_code_are_named(lines, old, new, expected
         ("Take a mode", "Read a mode"),
         ("msg: String) -> None", "msg)"),
         ("max(value, low)", "max(\n        value,\n        low,\n    )  # the larger one"),
-        ("class Driver", "import os\n\n\nclass Driver"),
     ],
 )
 def test_layout_comments_annotations_and_outputs_of_python_are_not_named(lines, old, new):
@@ -241,3 +241,8 @@ def test_a_name_that_may_be_defined_is_not_breaking(repository, compare, old, ne
     repository.commit({**MANIFEST, "arm/scripts/half.py": USER})
     repository.write({"arm/scripts/half.py": USER.replace(old, new)})
     assert breaking(compare(repository)) == []
+
+
+def test_code_of_python_2_that_prints_a_list_is_read(lines):
+    text = "def plan(run):\n    print 'plan'\n    print [item for item in run.line]\n    run.go(run.line)\n"
+    assert lines("arm/scripts/plan.py", text, text.replace("go(run.line)", "go()")) == ["code changed in 'plan()'"]

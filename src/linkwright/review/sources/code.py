@@ -46,10 +46,12 @@ class Code:
     Attributes:
         functions: the statements of each function, by its name with that of its class; the first one is the head.
         others: the statements of each class outside of its functions; those outside of classes have no name.
+        imports: the imports of a source in Python.
     """
 
     functions: dict[str, list[Part]] = field(default_factory=dict)
     others: dict[str, list[Part]] = field(default_factory=dict)
+    imports: list[Part] = field(default_factory=list)
 
     def body(self, name: str) -> list[str]:
         """Return the code of a function without its head."""
@@ -62,7 +64,10 @@ def read_code(source: SourceText) -> Code:
         if PurePosixPath(source.name).suffix in CPP_SUFFIXES:
             return _read_cpp(source)
         code = Code()
-        _read_python(parsed_source(source).tree.body, "", code)
+        tree = parsed_source(source).tree
+        imports = (node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom)))
+        code.imports = [_python_part(node, "") for node in imports]
+        _read_python(tree.body, "", code)
     except (ValueError, SyntaxError, RecursionError):
         return Code()
     return code

@@ -46,7 +46,7 @@ def code_change(
 ) -> CodeChange | None:
     """Return the functions of a source that change, and are not named by other lines; None if there are none.
 
-    If there are none, and no other lines, they are the classes whose code changes outside of functions.
+    If there are none, and no other lines, they are the classes whose code changes outside of functions, or the imports.
 
     Args:
         old: the old code.
@@ -109,7 +109,20 @@ def _other_change(old: Code, new: Code) -> CodeChange | None:
     if parts and _texts(old.others.get("", ())) != _texts(parts):
         line = _first_line(parts, old.others.get("", ()))
         return CodeChange(phrase("code changed outside of functions"), line, is_old=False)
-    return None
+    return _import_change(old.imports, new.imports)
+
+
+def _import_change(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
+    """Return the imports that only one version of a source has, or None if both have the same."""
+    before, after = set(_texts(old)), set(_texts(new))
+    removed = [part for part in old if part.text not in after]
+    added = [part for part in new if part.text not in before]
+    texts = []
+    if added:
+        texts.append(phrase("imports added: {imports}", imports=_listed(f"'{part.text}'" for part in added)))
+    if removed:
+        texts.append(phrase("imports removed: {imports}", imports=_listed(f"'{part.text}'" for part in removed)))
+    return CodeChange(joined(texts, "; "), (added or removed)[0].first, is_old=not added) if texts else None
 
 
 def _first_line(parts: Sequence[Part], others: Sequence[Part]) -> int:
