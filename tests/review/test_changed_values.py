@@ -106,14 +106,23 @@ def test_a_literal_that_changes_in_python_is_told_with_its_place(lines, old, new
         ("not 6", "not 7"),
         ("1 m/s", "2 m/s"),
         ("0.30, name='drill'", '.3, name="drill"'),
-        ("append(1)\n", "append(0)\n        self.items.append(3)\n"),
-        ("append(1)\n        self.items.append(2)", "append(2)\n        self.items.append(1)"),
-        ("msg.j1 = 1", "msg.j2 = 2"),
-        ("1.5", "PAUSE"),
     ],
 )
-def test_other_texts_and_statements_without_a_counterpart_are_not_told(lines, old, new):
+def test_texts_for_people_are_not_told(lines, old, new):
     assert lines("rover/scripts/drive.py", PYTHON, old, new) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "function"),
+    [
+        ("append(1)\n", "append(0)\n        self.items.append(3)\n", "Rover.reset"),
+        ("append(1)\n        self.items.append(2)", "append(2)\n        self.items.append(1)", "Rover.reset"),
+        ("msg.j1 = 1", "msg.j2 = 2", "Rover.drive"),
+        ("1.5", "PAUSE", "Rover.drive"),
+    ],
+)
+def test_of_statements_without_a_counterpart_the_function_is_told(lines, old, new, function):
+    assert lines("rover/scripts/drive.py", PYTHON, old, new) == [f"code changed in '{function}()'"]
 
 
 @pytest.mark.parametrize(
@@ -160,17 +169,13 @@ def test_a_long_text_is_read_once_and_shown_in_part(lines):
 
 def test_a_constant_of_the_source_with_another_name_is_not_a_value(lines):
     text = "STEP = 1\n\ndef f():\n    return STEP\n"
-    assert lines("rover/step.py", text, "STEP", "STEP_SIZE") == []
+    assert lines("rover/step.py", text, "STEP", "STEP_SIZE") == ["code changed in 'f()'"]
 
 
 def test_texts_that_only_change_their_order_are_not_told(lines):
     text = "layout = [button('Start', size=4, key=1), button('Stop', size=4, key=1)]\n"
-    assert (
-        lines(
-            "rover/panel.py", text, "'Start', size=4, key=1), button('Stop'", "'Stop', size=4, key=1), button('Start'"
-        )
-        == []
-    )
+    old, new = "'Start', size=4, key=1), button('Stop'", "'Stop', size=4, key=1), button('Start'"
+    assert lines("rover/panel.py", text, old, new) == ["code changed outside of functions"]
 
 
 def test_values_that_other_lines_tell_are_not_told_again(lines):

@@ -67,10 +67,10 @@ def test_functions_of_a_header_are_read_with_their_types():
         ("void stop();", "void stop();\n  virtual void halt() = 0;", ["functions added: 'Driver::halt'"], True),
         ("double angle,", "float angle,",
          ["function 'Driver::move': (double, std::map<int,double>) -> (float, std::map<int,double>)"], True),
-        ("void own(int x)", "void own(int x, int y)", [], False),
-        ("void reset(int x)", "void reset(int x, int y)", [], False),
+        ("void own(int x)", "void own(int x, int y)", ["code changed in 'Driver'"], False),
+        ("void reset(int x)", "void reset(int x, int y)", ["code changed in 'Driver'"], False),
         ("int rate() const", "int rate() const override", [], False),
-        ("(double angle,", "(double value,", [], False),
+        ("(double angle,", "(double value,", ["code changed in 'Driver'"], False),
         ("class ARM_PUBLIC Driver", "class ARM_PUBLIC ArmDriver", ["class 'Driver' renamed to 'ArmDriver'"], True),
     ],
 )  # fmt: skip

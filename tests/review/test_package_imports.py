@@ -18,13 +18,14 @@ INIT = "import os\nfrom .driver import Driver\n"
 
 @pytest.fixture
 def lines(repository, compare):
-    """Review a replacement of ``arm/__init__.py``, and return the sentences of all and of the breaking changes."""
+    """Review a replacement of ``arm/__init__.py``, and return the sentences except those about all imports."""
 
     def run(old, new, files=FILES):
         repository.commit({**files, "arm/__init__.py": old})
         repository.write({"arm/__init__.py": new})
         result = compare(repository)
-        return [sentence for subject in result.subjects for sentence in sentences(subject)], breaking(result)
+        found = [sentence for subject in result.subjects for sentence in sentences(subject)]
+        return [sentence for sentence in found if not sentence.startswith("imports ")], breaking(result)
 
     return run
 

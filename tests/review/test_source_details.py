@@ -156,11 +156,14 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("cfg/Arm.cfg", CFG, 'gen.add("mode", str_t, 0, "The mode", "fast")\n', "",
          ["parameters removed: 'mode' ('fast')"], True),
         ("cfg/tool.cfg", "[rate]\n", "rate", "speed", [], False),
-        ("src/driver.hpp", HEADER, "class Driver", "class Tool", [], False),
+        ("src/driver.hpp", HEADER, "class Driver", "class Tool",
+         ["code added: 'Tool'; code removed: 'Driver'"], False),
         ("arm/tools.py", MODULE, "def grip", "def release",
          ["functions added: 'release'", "functions removed: 'grip'"], True),
-        ("scripts/tools.py", MODULE, "def grip", "def release", [], False),
-        ("arm/tools.py", MODULE, "def _own", "def _mine", [], False),
+        ("scripts/tools.py", MODULE, "def grip", "def release",
+         ["code added: 'release()'; code removed: 'grip()'"], False),
+        ("arm/tools.py", MODULE, "def _own", "def _mine",
+         ["code added: '_mine()'; code removed: '_own()'"], False),
     ],
 )  # fmt: skip
 def test_changes_of_sources_are_reported(repository, compare, name, text, old, new, expected, is_breaking):

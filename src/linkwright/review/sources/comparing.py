@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from functools import cached_property
@@ -17,6 +17,8 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Probl
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.changed_values import value_changes
+from linkwright.review.sources.code import Code, read_code
+from linkwright.review.sources.code_changes import code_change
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
@@ -27,12 +29,14 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
-from linkwright.review.sources.package_imports import failing_imports, is_installed_package
-from linkwright.review.sources.reading import is_program_text, read_source_names
+from linkwright.review.sources.package_imports import failing_imports, is_installed_module, is_installed_package
+from linkwright.review.sources.reading import is_program_text, read_source_names, readable_source
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SKIPPED = frozenset({"setup.py", "conf.py"})
+_MAX_ARGUMENTS = 80
+"""The number of characters up to which the arguments of an added function or class are shown."""
 _MAX_FUNCTIONS = 3
 """The number of functions of a file with other arguments up to which each has a line."""
 _UNITS = re.compile(
@@ -97,6 +101,28 @@ class _Side:
     def names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+
+    @cached_property
+    def codes(self) -> Mapping[str, Code]:
+        """The code of the changed sources, by path."""
+        sources = {path: readable_source(self.version.file(path)) for path in self._names}
+        return {path: read_code(source) for path, source in sources.items() if source is not None}
+
+    def has_function(self, name: str, code: Code, path: str) -> bool:
+        """Return whether another changed source has a function with the same name and code.
+
+        Args:
+            name: the function with its class.
+            code: the code that has the function.
+            path: the path of the source that is not searched.
+        """
+        short, body = re.split(r"\.|::", name)[-1], code.body(name)
+        return any(
+            re.split(r"\.|::", each)[-1] == short and other.body(each) == body
+            for other_path, other in self.codes.items()
+            if other_path != path
+            for each in other.functions
+        )
 
     @cached_property
     def _known(self) -> frozenset[tuple[NameKind, str]]:
@@ -185,11 +211,29 @@ class _Pair:
         changes = [change for kind in NameKind for change in self._changes_of(kind, old_names, new_names)]
         changes += self._rate_changes(old_names, new_names)
         changes += self._import_changes(old_names, new_names)
-        yield from changes
+        changes += self._undefined_changes(old_names, new_names)
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
-            for text, span in value_changes(old_path, new_path, [str(change.sentence) for change in changes]):
-                yield self._change(text, span, self.new, None)
+            told = [str(change.sentence) for change in changes]
+            values = value_changes(old_path, new_path, told)
+            changes += [self._change(text, span, self.new, None) for text, span in values]
+            changes += self._code_changes(self.file.old_path, self.file.new_path, changes)
+        yield from changes
+
+    def _code_changes(self, old_path: str, new_path: str, told: Sequence[Change]) -> Iterator[Change]:
+        """Yield the functions whose code changes, if other lines do not tell it."""
+        old, new = self.old.codes.get(old_path), self.new.codes.get(new_path)
+        if not old or not new:
+            return
+
+        def has_moved(name: str, code: Code) -> bool:
+            side, path = (self.new, new_path) if code is old else (self.old, old_path)
+            return side.has_function(name, code, path)
+
+        change = code_change(old, new, told, has_moved, self.new.names(new_path))
+        if change is not None:
+            location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
+            yield Change(change.text, location=location)
 
     def problems(self) -> Iterator[Problem]:
         """Yield the reason why the names of one version are not known, if that of the other version are."""
@@ -220,13 +264,8 @@ class _Pair:
         after = {_key(item): item for item in new_names.of(kind)}
         changed = [(item, *each) for name, item in after.items() if name in before
                    for each in detail_changes(before[name], item)]  # fmt: skip
-        if kind is NameKind.FUNCTION and not self._is_interface(self.file.old_path or self.file.path):
-            changed = []
-        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
-            yield self._merged_functions(changed)
-            changed = []
-        for item, text, reason in changed:
-            yield self._change(text, item.span, self.new, reason)
+        yield from self._detail_changes(kind, changed, old_names)
+        is_python = self.file.path.endswith(PYTHON_SUFFIX)
         path = self.file.path
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
@@ -235,7 +274,8 @@ class _Pair:
             is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
-        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not self._is_interface(old_path):
+        is_told = kind is NameKind.CLASS and is_python
+        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not is_told and not self._is_interface(old_path):
             return
         if kind is NameKind.IMPORT:
             if None in (self.file.old_path, self.file.new_path) or not is_installed_package(
@@ -247,6 +287,11 @@ class _Pair:
             classes = [{item.name for item in names.of(NameKind.CLASS)} for names in (old_names, new_names)]
             removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
             added = [item for item in added if _has_class(item, classes[0] & classes[1])]
+        if kind is NameKind.FUNCTION and is_python:
+            is_installed = is_installed_module(self.old.version, self.old.package(old_path), old_path)
+            plain = old_names.plain_classes & new_names.plain_classes if is_installed else set()
+            removed = [item for item in removed if _is_of(item, plain)]
+            added = [item for item in added if _is_of(item, plain)]
         for old_item, new_item in _renamed(removed, added):
             text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
             is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
@@ -257,6 +302,21 @@ class _Pair:
         yield from self._expression_changes(kind, removed, added)
         yield from self._lone_changes(kind, removed, added, old_names)
 
+    def _detail_changes(
+        self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames
+    ) -> Iterator[Change]:
+        """Yield the changes of names that both versions have; those of functions only if others can call them."""
+        is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
+        is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
+        if kind is NameKind.FUNCTION and not is_called:
+            return
+        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
+            yield self._merged_functions(changed)
+            return
+        for item, text, reason in changed:
+            is_breaking = is_called or kind is not NameKind.CLASS
+            yield self._change(text, item.span, self.new, reason if is_breaking else None)
+
     def _merged_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
         """Return one change for many functions with other arguments."""
         names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), MAX_NAMES)
@@ -264,6 +324,8 @@ class _Pair:
         reason = next((reason for _, _, reason in changed if reason is not None), None)
         if reason is not None:
             reason = phrase("code that calls them with the old arguments does not build")
+            if self.file.path.endswith(PYTHON_SUFFIX):
+                reason = phrase("programs that call them with the old arguments fail")
         return self._change(text, changed[0][0].span, self.new, reason)
 
     def _is_interface(self, path: str) -> bool:
@@ -287,7 +349,10 @@ class _Pair:
             yield self._change(text, removed[0].span, self.old, self._reason(removed, old_names))
 
     def _reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
-        return removal_reason(items, names, self.file.old_path or self.file.path)
+        path = self.file.old_path or self.file.path
+        if items[0].kind is NameKind.CLASS and not self._is_interface(path):
+            return None
+        return removal_reason(items, names, path)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
@@ -350,6 +415,13 @@ class _Pair:
                 text = phrase("absolute import of '{name}', a module of the same package", name=name)
                 yield self._change(text, span, self.new, phrase("the package cannot be imported once it is installed"))
 
+    def _undefined_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the names that are still used, but not defined or imported any more."""
+        for name, span in new_names.undefined.items() if self.file.old_path is not None else ():
+            if name in old_names.bound:
+                text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
+                yield self._change(text, span, self.new, phrase("the code that uses the name fails"))
+
     @staticmethod
     def _change(text: Phrase, span: Span, side: _Side, reason: Phrase | None) -> Change:
         path = side.version.relative(span.file)
@@ -369,7 +441,10 @@ def _is_number(rate: str) -> bool:
 
 
 def _name(item: SourceName) -> str:
-    """Return a name with the type of its messages, or the default of a parameter."""
+    """Return a name with the type of its messages, the default of a parameter, or the arguments of a function."""
+    arguments = dict(item.details).get(Detail.ARGUMENTS, "()")
+    if arguments != "()" and len(arguments) <= _MAX_ARGUMENTS:
+        return f"'{item.name}' {arguments}"
     return f"'{item.name}' ({item.type})" if item.type else f"'{item.name}'"
 
 
@@ -397,6 +472,12 @@ def _has_class(function: SourceName, classes: Collection[str]) -> bool:
     """Return whether a function of C++ is in one of the classes, or in none."""
     names = function.name.split("::")[:-1]
     return not names or names[-1] in classes
+
+
+def _is_of(function: SourceName, classes: Collection[str]) -> bool:
+    """Return whether a function of Python is a method of one of the classes, or of none."""
+    class_name, _, _ = function.name.rpartition(".")
+    return not class_name or class_name in classes
 
 
 def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:

@@ -57,6 +57,8 @@ _NODE = re.compile(
 )
 _INIT = re.compile(r"\bros::init\s*\(")
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
+_RECONFIGURATION = re.compile(r"\bdynamic_reconfigure\s*::\s*Server\s*<\s*(?:\w+\s*::\s*)*(?P<name>\w+)\s*>")
+_POINTER = re.compile(r"&\s*(?:\w+::)+(\w+)")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
@@ -121,6 +123,8 @@ class _Reader:
         self._read_members()
         for match in _RATE.finditer(text):
             self._read_rate(match)
+        for match in _RECONFIGURATION.finditer(text):
+            self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
         for match in _COMPONENT.finditer(text):
             for begin, end in list(_arguments(text, match.end() - 1))[:1]:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
@@ -203,6 +207,15 @@ class _Reader:
         if namespace and name and not name.startswith(("/", "~")):
             name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
         self._add(kind, name, *found, type_name, tuple(details))
+        if kind in (NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION):
+            self._add_callback(kind, name, arguments)
+
+    def _add_callback(self, kind: NameKind | None, name: str, arguments: list[tuple[int, int]]) -> None:
+        """Add the member function that messages, requests, goals or a timer call, if it is the only one."""
+        text = self._text[arguments[0][0] : arguments[-1][1]]
+        functions = set(_POINTER.findall(text))
+        if len(functions) == 1:
+            self._names.callbacks.setdefault(functions.pop(), (kind, name))
 
     def _default(self, function: str, arguments: list[tuple[int, int]]) -> str:
         """Return the literal default of a parameter; that of a function that returns the value is the second."""
@@ -235,6 +248,8 @@ class _Reader:
         if index < len(texts):
             name = match["name"].split()[0]
             self._names.rates.append((f"{name}({texts[index]})", self._span(*arguments[index])))
+            if "imer" in name:
+                self._add_callback(None, "", arguments)
 
     def _value(self, begin: int, end: int) -> str | None:
         """Return the text of a literal or of a constant of the source, or None for another expression."""

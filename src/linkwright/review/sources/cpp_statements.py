@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from linkwright.review.sources.statements import Statement, statement_of
@@ -37,8 +37,30 @@ class _Block:
 
 
 def cpp_statements(text: str) -> dict[str, list[Statement]]:
-    """Return the statements of a source by the name of their function or class; others have no name."""
+    """Return the statements of a source by the name of their function or class; others have no name.
+
+    Statements that print, log or throw are left out.
+    """
     reader = _Reader()
+    _read(text, reader)
+    return {
+        name: [statement_of(tokens) for tokens in statements if len(tokens) > 1 and not is_output(tokens)]
+        for name, statements in reader.blocks.items()
+    }
+
+
+def read_cpp_blocks(text: str) -> tuple[Mapping[str, Sequence[Sequence[Token]]], Collection[str]]:
+    """Return the tokens of the statements by the name of their function or class, and the names of the functions.
+
+    Nothing is known of a text whose braces do not match, as with branches of the preprocessor.
+    """
+    reader = _Reader()
+    is_complete = _read(text, reader)
+    return (reader.blocks, reader.functions) if is_complete else ({}, ())
+
+
+def _read(text: str, reader: _Reader) -> bool:
+    """Read a source, and return whether its braces match."""
     for match in _DIRECTIVE.finditer(text):
         define = _DEFINE.match(match[0])
         if define is not None:
@@ -49,20 +71,30 @@ def cpp_statements(text: str) -> dict[str, list[Statement]]:
                 mark = Token(TokenKind.OPERATOR, "=", value[0].start, has_space=True)
                 reader.add("", [name[0], mark, *value])
     code = _DIRECTIVE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
-    reader.read(cpp_tokens(code))
-    return reader.functions
+    tokens = cpp_tokens(code)
+    reader.read(tokens)
+    braces = [token.text for token in tokens if token.kind is TokenKind.OPERATOR]
+    return braces.count("{") == braces.count("}")
 
 
 class _Reader:
+    """Reads statements.
+
+    Attributes:
+        blocks: the tokens of the statements by the name of their function or class.
+        functions: the names of the functions.
+    """
+
     def __init__(self) -> None:
-        self.functions: dict[str, list[Statement]] = {}
+        self.blocks: dict[str, list[list[Token]]] = {}
+        self.functions: set[str] = set()
         self._blocks = [_Block("", is_function=False)]
         self._pending: list[Token] = []
 
     def add(self, name: str, tokens: Sequence[Token]) -> None:
-        """Add a statement, unless it is an output."""
-        if len(tokens) > 1 and not _is_output(tokens):
-            self.functions.setdefault(name, []).append(statement_of(tokens))
+        """Add a statement."""
+        if tokens:
+            self.blocks.setdefault(name, []).append(list(tokens))
 
     def read(self, tokens: Sequence[Token]) -> None:
         """Add the statements of a source without directives of the preprocessor."""
@@ -112,6 +144,7 @@ class _Reader:
             elif not words & _CONTROLS and "=" not in words:
                 name = "::".join(part for part in (block.name, _function_name(header)) if part)
                 is_function = True
+                self.functions.add(name)
             self.add(name, header)
             pending = []
         self._blocks.append(_Block(name, is_function, pending))
@@ -138,18 +171,35 @@ def _scope_name(header: Sequence[Token]) -> str | None:
         return ""
     names = words[words.index(kind) + 1 :]
     end = next((index for index, word in enumerate(names) if word in (":", "final", "<")), len(names))
+    if end > 1 and names[end - 1].isupper() and not names[end - 2].isupper():
+        end -= 1  # a macro behind the name
     return names[end - 1] if end else ""
 
 
 def _function_name(header: Sequence[Token]) -> str:
-    """Return the name before the first parenthesis of a function's header."""
-    index = next((index for index, token in enumerate(header) if token.text == "("), 0)
+    """Return the name before the parenthesis with the parameters in a function's header."""
+    index = _parameters_start(header)
     start = index
     while start > 0 and (
         start == index or header[start].text == "::" or header[start - 1].text in ("::", "~", "operator")
     ):
         start -= 1
     return "".join(token.text for token in header[start:index])
+
+
+def _parameters_start(header: Sequence[Token]) -> int:
+    """Return the index of the parenthesis with the parameters: the first one outside of templates and macros."""
+    pairs = bracket_pairs(header)
+    depth = 0
+    for index, token in enumerate(header):
+        previous = header[index - 1].text if index else ""
+        if previous != "operator":
+            depth = max(0, depth + (token.text == "<") - (token.text == ">"))
+        end = pairs.get(index, len(header))
+        is_macro = previous.isupper() and end + 1 < len(header) and header[end + 1].kind is TokenKind.WORD
+        if token.text == "(" and depth == 0 and index and not is_macro:
+            return index
+    return 0
 
 
 def _parenthesis(tokens: Sequence[Token]) -> bool:
@@ -160,7 +210,7 @@ def _parenthesis_depth(tokens: Sequence[Token]) -> int:
     return sum((token.text in "([{") - (token.text in ")]}") for token in tokens if token.kind is TokenKind.OPERATOR)
 
 
-def _is_output(tokens: Sequence[Token]) -> bool:
+def is_output(tokens: Sequence[Token]) -> bool:
     """Return whether a statement prints, logs or throws."""
     words = (token.text for token in tokens[:4] if token.kind is TokenKind.WORD and token.text != "std")
     first = next(words, "")

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.sources.names import NO, Detail, NameKind, SourceName
+from linkwright.review.sources.signatures import parsed_signature
 
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
@@ -22,7 +23,7 @@ def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
-        if before == after or (detail is Detail.QOS and None in (before, after)):
+        if before == after or (detail in (Detail.QOS, Detail.ARGUMENTS) and None in (before, after)):
             continue
         missing = NO if detail in (Detail.LATCH, Detail.REQUIRED) else "-"
         text = phrase(
@@ -100,6 +101,10 @@ def _reason(name: SourceName, detail: Detail, before: str | None, after: str | N
         return phrase("classes that derive from the class and do not define it do not build") if after else None
     if detail is Detail.REQUIRED and after:
         return phrase("callers that do not pass '{name}' get an error", name=name.name)
+    if detail is Detail.ARGUMENTS:
+        before_change, after_change = parsed_signature(old), parsed_signature(new)
+        is_same = before_change is None or after_change is None or after_change.accepts_calls_of(before_change)
+        return None if is_same else phrase("programs that call '{name}' with the old arguments fail", name=name.name)
     if detail is Detail.LATCH and before:
         return phrase("subscribers that start later do not get the last message")
     return None

@@ -36,6 +36,9 @@ class NameKind(Enum):
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     CLASS = (phrase("class"), phrase("classes"))
     FUNCTION = (phrase("function"), phrase("functions"))
+    RECONFIGURATION = (phrase("server of dynamic_reconfigure"), phrase("servers of dynamic_reconfigure"))
+    ROUTE = (phrase("web route"), phrase("web routes"))
+    WEB_EVENT = (phrase("event of Socket.IO"), phrase("events of Socket.IO"))
     IMPORT = (phrase("name of the package"), phrase("names of the package"))
 
     def __init__(self, title: Phrase, plural: Phrase) -> None:
@@ -56,6 +59,7 @@ class Detail(Enum):
     CHOICES = phrase("choices")
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
+    ARGUMENTS = phrase("arguments")
 
     @property
     def title(self) -> Phrase:
@@ -95,6 +99,11 @@ class SourceNames:
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
         is_error_certain: whether the syntax error is one in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
+        callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
+            a timer.
+        plain_classes: the classes of a source in Python that certainly have no methods besides those in their bodies.
+        bound: the names that a source in Python 3 defines or imports.
+        undefined: the names that a source uses although nothing defines them, each with the location of its first use.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
@@ -106,6 +115,10 @@ class SourceNames:
     error_line: int = 0
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
+    callbacks: dict[str, tuple[NameKind | None, str]] = field(default_factory=dict)
+    plain_classes: set[str] = field(default_factory=set)
+    bound: frozenset[str] = frozenset()
+    undefined: dict[str, Span] = field(default_factory=dict)
     has_star: bool = False
 
     def add(self, name: SourceName) -> None:

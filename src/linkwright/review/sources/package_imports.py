@@ -48,9 +48,14 @@ def _add(python: PythonFile, names: SourceNames, name: str, node: ast.expr | ast
 
 def is_installed_package(version: Version, package: str | None, path: str) -> bool:
     """Return whether a file is the ``__init__.py`` of a Python package that a package of ROS installs."""
-    file = PurePosixPath(path)
-    if package is None or file.name != PACKAGE_FILE:
+    return PurePosixPath(path).name == PACKAGE_FILE and is_installed_module(version, package, path)
+
+
+def is_installed_module(version: Version, package: str | None, path: str) -> bool:
+    """Return whether a file is in the folder of a Python package that a package of ROS installs."""
+    if package is None:
         return False
+    file = PurePosixPath(path)
     folders = [
         PurePosixPath(package) / part / name for name in python_packages(version, package) for part in ("", "src")
     ]

@@ -13,6 +13,8 @@ from linkwright.packages.readers.python_values import PythonFile, Value, argumen
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.python2 import as_python3
+from linkwright.review.sources.signatures import is_plain, method_signatures, signature_of
+from linkwright.review.sources.undefined_names import bound_names, undefined_names
 
 _RCLPY = {
     "create_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
@@ -37,6 +39,13 @@ _NODE_FIRST = {
     "Subscriber": NameKind.SUBSCRIPTION,
 }
 """The classes of ROS 2 whose first three arguments are the node, the type and the name."""
+_WITH_CALLBACK = {
+    NameKind.SUBSCRIPTION: "callback",
+    NameKind.SERVICE: "handler",
+    NameKind.ACTION: "execute_cb",
+}
+"""The kinds of names with a callback as their third argument, and its name in ROS 1."""
+_ROUTES = ("route", "get", "post", "put", "delete", "patch", "websocket")
 _NODES = ("init_node", "create_node", "Node", "LifecycleNode")
 _RATES = {"Rate": 0, "create_rate": 0, "Timer": 0, "create_timer": 0}
 _LOOKUPS = {
@@ -58,6 +67,9 @@ def read_python(source: SourceText, names: SourceNames) -> None:
     """
     python = parsed_source(source)
     _Reader(python, names).read()
+    if python.source is source:  # not one that only Python 2 can parse
+        names.bound = frozenset(bound_names(python.tree))
+        names.undefined.update((name, python.span(node)) for name, node in undefined_names(python.tree).items())
     if PurePosixPath(source.name).name == PACKAGE_FILE:
         read_imports(python, names)
 
@@ -194,12 +206,44 @@ class _Reader:
                 if isinstance(node.func, ast.Attribute) and function == "":
                     function = node.func.attr
                 self._read_call(node, function)
+        for part in ast.walk(tree):
+            if isinstance(part, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                self._read_decorators(part)
         for statement in tree.body:
             if isinstance(statement, (ast.ClassDef, ast.FunctionDef)) and not statement.name.startswith("_"):
                 kind = NameKind.CLASS if isinstance(statement, ast.ClassDef) else NameKind.FUNCTION
-                self._names.add(SourceName(kind, statement.name, "", self._python.span(statement)))
+                signature = signature_of(statement)
+                details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
+                self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
+                if isinstance(statement, ast.ClassDef) and is_plain(statement):
+                    self._read_methods(statement)
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
+
+    def _read_decorators(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+        """Add the routes of a web server, and the events of Socket.IO, that call a function."""
+        for decorator in function.decorator_list:
+            text = self._python.text(decorator.args[0]) if isinstance(decorator, ast.Call) and decorator.args else None
+            if not isinstance(decorator, ast.Call) or text is None:
+                continue
+            method = called_name(decorator).rpartition(".")[2]
+            kind = NameKind.ROUTE if method in _ROUTES and text.startswith("/") else None
+            if method == "on" and "socketio" in self._python.source.text:
+                kind = NameKind.WEB_EVENT
+            if kind is not None:
+                self._add(kind, decorator.args[0], None)
+                self._names.callbacks[function.name] = (kind, text)
+
+    def _read_methods(self, definition: ast.ClassDef) -> None:
+        """Add the public methods of a class, except those that the source passes to others, such as callbacks."""
+        nodes = list(ast.walk(definition))
+        called = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
+        passed = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called}
+        self._names.plain_classes.add(definition.name)
+        for method, signature in method_signatures(definition):
+            if method.name not in passed:
+                name, details = f"{definition.name}.{method.name}", ((Detail.ARGUMENTS, signature.text),)
+                self._names.add(SourceName(NameKind.FUNCTION, name, "", self._python.span(method), details))
 
     def _read_assignment(self, node: ast.Assign) -> None:
         for target in node.targets:
@@ -232,8 +276,12 @@ class _Reader:
             kind, type_keyword, name_keyword, qos_index = _RCLPY[function]
             qos = self._qos(_argument(call, qos_index, "qos_profile"))
             self._add(kind, _argument(call, 1, name_keyword), _argument(call, 0, type_keyword), qos)
+            if kind in _WITH_CALLBACK:
+                self._add_callback(kind, _argument(call, 1, name_keyword), _argument(call, 2, "callback"))
         elif function in _NODE_FIRST and len(call.args) > 2 and self._python.text(call.args[0]) is None:
             self._add(_NODE_FIRST[function], _argument(call, 2, "action_name"), _argument(call, 1, "action_type"))
+            if _NODE_FIRST[function] is NameKind.ACTION:
+                self._add_callback(NameKind.ACTION, call.args[2], _argument(call, 3, "execute_callback"))
         elif function in _NAME_FIRST and (call.args or call.keywords):
             self._read_ros1_call(call, function)
         elif function in _PARAMETER_CALLS:
@@ -256,13 +304,18 @@ class _Reader:
             value = argument_of(call, keyword)
             if isinstance(value, ast.Constant) and value.value not in (None, False):
                 details.append((detail, YES if value.value is True else str(value.value)))
-        self._add(_NAME_FIRST[function], name, types, tuple(details))
+        kind = _NAME_FIRST[function]
+        self._add(kind, name, types, tuple(details))
+        if kind in _WITH_CALLBACK:
+            self._add_callback(kind, name, _argument(call, 2, _WITH_CALLBACK[kind]))
 
     def _read_other_call(self, call: ast.Call, function: str) -> None:
         if function in _RATES and called_name(call).partition(".")[0] != "threading" and call.args:
             period = self._python.resolved(call.args[0])
             text = f"{function}({_shown(self._python, period)})"
             self._names.rates.append((text, self._python.span(call.args[0])))
+            if "imer" in function:
+                self._add_callback(None, None, _argument(call, 1, "callback"))
         elif function in _LOOKUPS:
             for index in _LOOKUPS[function]:
                 if index < len(call.args):
@@ -270,8 +323,19 @@ class _Reader:
         elif function == "sendTransform" and len(call.args) == 5:
             for index in (3, 4):
                 self._add_frame(NameKind.FRAME, call.args[index])
+        elif function == "Server" and len(call.args) > 1 and ast.unparse(call.args[0]).endswith("Config"):
+            name = ast.unparse(call.args[0]).rpartition(".")[2]
+            self._names.add(SourceName(NameKind.RECONFIGURATION, name, "", self._python.span(call)))
         elif function in ("add_argument", "add_option"):
             self._read_option(call)
+
+    def _add_callback(self, kind: NameKind | None, name: ast.expr | None, callback: ast.expr | None) -> None:
+        """Add the function that messages, requests, goals or a timer call, if its name and that of these are known."""
+        text = self._python.text(name)
+        is_known = text is not None or kind is None
+        if isinstance(callback, (ast.Name, ast.Attribute)) and is_known:
+            function = callback.id if isinstance(callback, ast.Name) else callback.attr
+            self._names.callbacks.setdefault(function, (kind, text or ""))
 
     def _read_option(self, call: ast.Call) -> None:
         texts = [text for text in map(self._python.text, call.args) if text]

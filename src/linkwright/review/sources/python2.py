@@ -55,7 +55,7 @@ def _with_spaces(line: str) -> str:
 def _is_statement(text: str, end: int) -> bool:
     """Return whether the word before an offset begins a statement of Python 2, and is not called or assigned."""
     rest = text[end:].lstrip(" \t")
-    return not rest.startswith(("=", ".", "[")) or rest.startswith("==")
+    return not rest.startswith(("=", ".")) or rest.startswith("==")
 
 
 def _replaced(kind: str, part: str) -> str:

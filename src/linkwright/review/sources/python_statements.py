@@ -49,7 +49,7 @@ class _Reader:
         for node in body:
             if _is_for_readers(node):
                 continue
-            blocks = _blocks(node)
+            blocks = blocks_of(node)
             if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
                 inner = f"{scope}.{node.name}" if scope else node.name
                 decorators = (
@@ -82,7 +82,7 @@ class _Reader:
         return self._starts[line - 1] + column
 
 
-def _blocks(node: ast.stmt) -> list[list[ast.stmt]]:
+def blocks_of(node: ast.stmt) -> list[list[ast.stmt]]:
     """Return the blocks of statements in a statement."""
     blocks = [getattr(node, name, []) for name in ("body", "orelse", "finalbody")]
     for child in (*getattr(node, "handlers", []), *getattr(node, "cases", [])):
@@ -98,7 +98,12 @@ def _is_for_readers(node: ast.stmt) -> bool:
         return False
     if isinstance(node.value, ast.Constant):
         return True
-    function = node.value.func if isinstance(node.value, ast.Call) else None
+    return any(_OUTPUT.fullmatch(name) or name == "get_logger" for name in called_names(node.value))
+
+
+def called_names(call: ast.expr) -> list[str]:
+    """Return the names of a called function, the last one first, such as ``info`` and ``get_logger``."""
+    function = call.func if isinstance(call, ast.Call) else None
     names: list[str] = []
     while function is not None:
         if isinstance(function, ast.Attribute):
@@ -109,4 +114,4 @@ def _is_for_readers(node: ast.stmt) -> bool:
         else:
             names += [function.id] if isinstance(function, ast.Name) else []
             break
-    return any(_OUTPUT.fullmatch(name) or name == "get_logger" for name in names)
+    return names

@@ -57,6 +57,8 @@ def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -
     if kind in (NameKind.CLASS, NameKind.FUNCTION):
         if names.is_program:
             return None
+        if path.endswith(PYTHON_SUFFIX) and all("." in item.name for item in items):
+            return phrase("programs that call '{name}' do not find it", name=text)
         if path.endswith(PYTHON_SUFFIX):
             return phrase("programs that import '{name}' do not find it", name=text)
         return phrase("code of other packages that uses '{name}' does not build", name=text)

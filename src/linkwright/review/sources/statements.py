@@ -252,11 +252,11 @@ def _value(tokens: Sequence[Token], *, is_divided: bool = False) -> str:
             continue
         else:
             text = _SWITCHES.get(token.text, token.text)
-            parts.append(_number(text, is_divided=is_divided) if token.kind is TokenKind.NUMBER else text)
+            parts.append(normal_number(text, is_divided=is_divided) if token.kind is TokenKind.NUMBER else text)
     return "".join(parts).replace('""', "") or '""'
 
 
-def _number(text: str, *, is_divided: bool) -> str:
+def normal_number(text: str, *, is_divided: bool) -> str:
     """Return a number as it is compared: ``0.20`` is ``.2``, and ``1.0`` is ``1`` unless it is divided."""
     match = re.fullmatch(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[fFlLuU]*", text.replace("'", ""))
     if match is None:

@@ -1,0 +1,266 @@
+"""The Python files that still import or call functions that another module removed or changed."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, SourceText, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.sources.names import PYTHON_SUFFIX
+from linkwright.review.sources.package_imports import PACKAGE_FILE
+from linkwright.review.sources.python import parsed_source
+from linkwright.review.sources.reading import readable_source
+from linkwright.review.sources.signatures import Signature, signature_of
+from linkwright.review.sources.undefined_names import bound_names
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+
+
+@dataclass(frozen=True)
+class _Module:
+    """The names of a module.
+
+    Attributes:
+        names: all names that it may have, besides those of its files.
+        defined: the names of its functions and classes.
+        signatures: the parameters of these, if they are certain.
+        is_complete: whether it certainly has no other names.
+    """
+
+    names: frozenset[str]
+    defined: frozenset[str]
+    signatures: Mapping[str, Signature]
+    is_complete: bool
+
+
+@dataclass(frozen=True)
+class _Lost:
+    """The functions and classes that a module removed or changed.
+
+    Attributes:
+        path: the path of the module.
+        removed: the functions and classes that are gone.
+        changed: the old and new parameters of others.
+        is_gone: whether the whole module is gone.
+    """
+
+    path: str
+    removed: frozenset[str] = frozenset()
+    changed: Mapping[str, tuple[Signature, Signature]] = field(default_factory=dict)
+    is_gone: bool = False
+
+
+def broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the files that import a name which their module no longer has, or call it with arguments that do not fit.
+
+    Modules are those of the repository, and are found if only one file can be meant. Methods of objects are not
+    followed.
+    """
+    lost = [each for file in changed_files if (each := _lost(versions, file)) is not None]
+    if not lost:
+        return
+    files = _Files(versions.new, [each.path for each in lost if each.is_gone])
+    for path in files.paths:
+        text = versions.new.text(path)
+        candidates = [each for each in lost if _module_word(each.path) in text and _has_any(each, text)]
+        tree = _tree(versions.new, path) if candidates else None
+        if tree is None:
+            continue
+        for each in candidates:
+            if each.path != path:
+                yield from ((path, change) for change in _Caller(files, path, tree, each).changes())
+
+
+def _lost(versions: Versions, file: ChangedFile) -> _Lost | None:
+    """Return the functions and classes that a changed module removed or changed, or None if there are none."""
+    path = file.old_path
+    if path is None or not path.endswith(PYTHON_SUFFIX) or file.is_submodule:
+        return None
+    if path != file.new_path:
+        return _Lost(path, is_gone=True)
+    old, new = (_module(version, path) for version in (versions.old, versions.new))
+    if old is None or new is None:
+        return None
+    removed = old.defined - new.names if new.is_complete else frozenset[str]()
+    common = old.signatures.keys() & new.signatures.keys()
+    changed = {name: (old.signatures[name], new.signatures[name]) for name in common}
+    changed = {name: pair for name, pair in changed.items() if pair[0].text != pair[1].text}
+    return _Lost(path, removed, changed) if removed or changed else None
+
+
+def _module_word(path: str) -> str:
+    pure_path = PurePosixPath(path)
+    return pure_path.parent.name if pure_path.name == PACKAGE_FILE else pure_path.stem
+
+
+def _has_any(lost: _Lost, text: str) -> bool:
+    return lost.is_gone or any(name in text for name in (*lost.removed, *lost.changed))
+
+
+def _tree(version: Version, path: str) -> ast.Module | None:
+    source: SourceText | None = readable_source(version.file(path))
+    try:
+        return None if source is None else parsed_source(source).tree
+    except (SyntaxError, ValueError, RecursionError):
+        return None
+
+
+def _module(version: Version, path: str) -> _Module | None:
+    tree = _tree(version, path)
+    if tree is None:
+        return None
+    bound = list(bound_names(tree))
+    definitions = [
+        node for node in tree.body if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef))
+    ]
+    pairs = ((node.name, signature_of(node)) for node in definitions if bound.count(node.name) == 1)
+    is_dynamic = {"__getattr__", "*"} & set(bound) or any(
+        isinstance(node, ast.Name) and node.id in ("globals", "exec") for node in ast.walk(tree)
+    )
+    signatures = {name: signature for name, signature in pairs if signature is not None}
+    return _Module(frozenset(bound), frozenset(node.name for node in definitions), signatures, not is_dynamic)
+
+
+class _Files:
+    """The sources in Python of a version, except tests.
+
+    Args:
+        version: the version.
+        gone: the paths of modules that only the other version has.
+    """
+
+    def __init__(self, version: Version, gone: Sequence[str]) -> None:
+        paths = version.paths((PYTHON_SUFFIX,))
+        self.paths = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
+        self._gone = gone
+
+    @cached_property
+    def _known(self) -> frozenset[str]:
+        return frozenset((*self.paths, *self._gone))
+
+    def module(self, path: str, name: str, level: int) -> str | None:
+        """Return the path of the module that a file imports, or None if several or none can be meant.
+
+        Args:
+            path: the path of the file.
+            name: the name of the module; empty for a package.
+            level: the number of dots before the name.
+        """
+        folder = PurePosixPath(path).parent
+        part = name.replace(".", "/")
+        if level:
+            parents = [folder, *folder.parents]
+            places = [parents[level - 1] / part] if level <= len(parents) else []
+            files = [f"{place}{end}" for place in places for end in (PYTHON_SUFFIX, f"/{PACKAGE_FILE}")]
+            return self._only(file for file in files if file in self._known)
+        beside = (folder / f"{part}{PYTHON_SUFFIX}").as_posix()
+        if "/" not in part:
+            return beside if beside in self.paths else None  # a module that is gone may be one of another package
+        ends = (f"/{part}{PYTHON_SUFFIX}", f"/{part}/{PACKAGE_FILE}")
+        return self._only(file for file in self._known if f"/{file}".endswith(ends))
+
+    @staticmethod
+    def _only(paths: Iterable[str]) -> str | None:
+        found = list(paths)
+        return found[0] if len(found) == 1 else None
+
+
+class _Caller:
+    """Finds the imports and calls in a file that fail now.
+
+    Args:
+        files: the sources of the version.
+        path: the path of the file.
+        tree: the file.
+        lost: the functions and classes that the module removed or changed.
+    """
+
+    def __init__(self, files: _Files, path: str, tree: ast.Module, lost: _Lost) -> None:
+        self._files = files
+        self._path = path
+        self._tree = tree
+        self._lost = lost
+        self._bound = list(bound_names(tree))
+        guarded = (node for node in ast.walk(tree) if isinstance(node, ast.Try))
+        self._guarded = {id(each) for node in guarded for part in node.body for each in ast.walk(part)}
+
+    def changes(self) -> Iterator[Change]:
+        """Yield a change for each name that the file still imports, and for each call that does not fit."""
+        functions: dict[str, str] = {}  # the local name of a function, and its name in the module
+        modules: set[str] = set()  # the local names of the module, with dots
+        for node in ast.walk(self._tree):
+            if isinstance(node, ast.Import):
+                lost = [alias for alias in node.names if self._is_lost_module(alias.name, 0)]
+                modules.update(alias.asname or alias.name for alias in lost)
+                if lost and self._lost.is_gone:
+                    yield from self._failing_import(node, None)
+            elif isinstance(node, ast.ImportFrom):
+                for alias in node.names:
+                    yield from self._imported(node, alias, functions, modules)
+        yield from self._calls(functions, modules)
+
+    def _imported(
+        self, node: ast.ImportFrom, alias: ast.alias, functions: dict[str, str], modules: set[str]
+    ) -> Iterator[Change]:
+        """Yield a change if an imported name is gone, or else add its local name to one of the collections."""
+        local = alias.asname or alias.name
+        name = f"{node.module}.{alias.name}" if node.module else alias.name
+        is_module = self._is_lost_module(name, node.level)
+        if not is_module and not self._is_lost_module(node.module or "", node.level):
+            return
+        if self._lost.is_gone:
+            if is_module or alias is node.names[0]:
+                yield from self._failing_import(node, None)
+        elif is_module:
+            modules.add(local)
+        elif alias.name in self._lost.removed:
+            yield from self._failing_import(node, alias.name)
+        elif alias.name in self._lost.changed and self._bound.count(local) == 1:
+            functions[local] = alias.name
+
+    def _failing_import(self, node: ast.stmt, name: str | None) -> Iterator[Change]:
+        """Yield the change that an import fails, unless the file expects that it may."""
+        if id(node) in self._guarded:
+            return
+        text = phrase("imports '{file}', which does not exist any more", file=self._lost.path)
+        if name is not None:
+            text = phrase("imports '{name}', which '{file}' no longer has", name=name, file=self._lost.path)
+        yield self._change(text, phrase("the import fails"), node)
+
+    def _calls(self, functions: Mapping[str, str], modules: set[str]) -> Iterator[Change]:
+        """Yield a change for each call that only fits the old parameters, and for each call of a removed function."""
+        for node in ast.walk(self._tree):
+            if not isinstance(node, ast.Call):
+                continue
+            name = functions.get(node.func.id) if isinstance(node.func, ast.Name) else None
+            if isinstance(node.func, ast.Attribute) and self._is_module(node.func.value, modules):
+                name = node.func.attr
+            if name is None:
+                continue
+            if name in self._lost.removed and id(node) not in self._guarded:
+                text = phrase("calls '{name}', which '{file}' no longer has", name=name, file=self._lost.path)
+                yield self._change(text, phrase("the call fails"), node)
+            elif name in self._lost.changed:
+                old, new = self._lost.changed[name]
+                if old.fits(node) and not new.fits(node):
+                    text = phrase(
+                        "calls '{name}' of '{file}' with the old arguments; the new ones are {arguments}",
+                        name=name,
+                        file=self._lost.path,
+                        arguments=new.text,
+                    )
+                    yield self._change(text, phrase("the call fails"), node)
+
+    def _is_module(self, node: ast.expr, modules: set[str]) -> bool:
+        text = ast.unparse(node) if isinstance(node, (ast.Name, ast.Attribute)) else ""
+        return text in modules and ("." in text or self._bound.count(text) == 1)
+
+    def _is_lost_module(self, name: str, level: int) -> bool:
+        return self._files.module(self._path, name, level) == self._lost.path
+
+    def _change(self, text: Phrase, reason: Phrase, node: ast.stmt | ast.expr) -> Change:
+        return Change(text, Effect.BREAKING, reason, Location(self._path, node.lineno, node.col_offset + 1))

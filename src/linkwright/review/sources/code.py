@@ -1,0 +1,210 @@
+"""The code of a source by function, in a form without layout, comments, docstrings and outputs."""
+
+from __future__ import annotations
+
+import ast
+import bisect
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import NamedTuple
+
+from linkwright.diagnostics import SourceText
+from linkwright.review.sources.cpp_statements import is_output, read_cpp_blocks
+from linkwright.review.sources.names import CPP_SUFFIXES
+from linkwright.review.sources.python import parsed_source
+from linkwright.review.sources.python_statements import blocks_of, called_names
+from linkwright.review.sources.statements import normal_number
+from linkwright.review.sources.tokens import Token, TokenKind
+
+_PRINTING = re.compile(r"p?print|log\w*|debug|info|warn|warning|error|critical|exception|fatal|echo", re.IGNORECASE)
+"""The functions that only print or log."""
+_FUNCTION = re.compile(r"(?:\w+(?:\.|::))*(?:~?\w+|operator\W+)")
+_CONTROLS = frozenset({"if", "for", "while", "switch", "catch"})
+_BRANCHES = frozenset({"else", "do", "try"})
+
+
+class Part(NamedTuple):
+    """A statement, or the head of one with statements in it.
+
+    Attributes:
+        text: the code as it is compared.
+        first: the number of its first line.
+        last: the number of its last line.
+    """
+
+    text: str
+    first: int
+    last: int
+
+
+@dataclass
+class Code:
+    """The code of a source.
+
+    Attributes:
+        functions: the statements of each function, by its name with that of its class; the first one is the head.
+        others: the statements of each class outside of its functions; those outside of classes have no name.
+        imports: the imports of a source in Python.
+    """
+
+    functions: dict[str, list[Part]] = field(default_factory=dict)
+    others: dict[str, list[Part]] = field(default_factory=dict)
+    imports: list[Part] = field(default_factory=list)
+
+    def body(self, name: str) -> list[str]:
+        """Return the code of a function without its head."""
+        return [part.text for part in self.functions.get(name, ())[1:]]
+
+
+def read_code(source: SourceText) -> Code:
+    """Return the code of a source in Python or C++; nothing for one that cannot be read with certainty."""
+    try:
+        if PurePosixPath(source.name).suffix in CPP_SUFFIXES:
+            return _read_cpp(source)
+        code = Code()
+        tree = parsed_source(source).tree
+        imports = (node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom)))
+        code.imports = [_python_part(node, "") for node in imports]
+        _read_python(tree.body, "", code)
+    except (ValueError, SyntaxError, RecursionError):
+        return Code()
+    return code
+
+
+# --- Python -------------------------------------------------------------------------------------------------------
+
+
+def _read_python(body: Sequence[ast.stmt], scope: str, code: Code) -> None:
+    """Add the code of a module or class."""
+    for node in body:
+        if isinstance(node, ast.ClassDef):
+            name = f"{scope}.{node.name}".lstrip(".")
+            code.others.setdefault(name, []).append(_python_part(node, ""))
+            _read_python(node.body, name, code)
+        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            parts = code.functions.setdefault(f"{scope}.{node.name}".lstrip("."), [])
+            parts.extend(_python_parts([node], ""))
+        else:
+            code.others.setdefault(scope, []).extend(_python_parts([node], ""))
+
+
+def _python_parts(body: Sequence[ast.stmt], indent: str) -> Iterator[Part]:
+    """Yield the statements of a block, each before those in it."""
+    for node in body:
+        if _is_skipped(node):
+            continue
+        yield _python_part(node, indent)
+        for index, block in enumerate(blocks_of(node)):
+            yield from _python_parts(block, f"{indent}{index or ' '}")
+
+
+def _python_part(node: ast.stmt, indent: str) -> Part:
+    """Return a statement without annotations, without messages of errors and without the statements in it."""
+    inner = blocks_of(node)
+    first = min([node.lineno, *(each.lineno for each in getattr(node, "decorator_list", []))])
+    last = inner[0][0].lineno - 1 if inner else node.end_lineno or node.lineno
+    return Part(indent + ast.unparse(_plain(node)), first, max(first, last))
+
+
+def _plain(node: ast.stmt) -> ast.stmt:
+    """Return a statement as it is compared. The tree is changed."""
+    if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
+        return ast.Raise(node.exc.func, None)
+    if isinstance(node, ast.Assert):
+        return ast.Assert(node.test, None)
+    if isinstance(node, ast.AnnAssign) and node.value is not None:
+        return ast.copy_location(ast.Assign([node.target], node.value), node)
+    if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+        node = ast.copy_location(_without_annotations(node), node)
+    elif not blocks_of(node):
+        return node
+    fields = {name: getattr(node, name) for name in node._fields if hasattr(node, name)}
+    fields.update((name, []) for name in ("orelse", "finalbody") if name in fields)
+    fields["body"] = [ast.Pass()]
+    if "handlers" in fields:
+        fields["handlers"] = [ast.ExceptHandler(each.type, None, [ast.Pass()]) for each in fields["handlers"]]
+        fields["finalbody"] = [] if fields["handlers"] else [ast.Pass()]
+    if "cases" in fields:
+        fields["cases"] = [ast.match_case(each.pattern, each.guard, [ast.Pass()]) for each in fields["cases"]]
+    return ast.copy_location(type(node)(**fields), node)
+
+
+def _without_annotations(node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.FunctionDef | ast.AsyncFunctionDef:
+    for argument in ast.walk(node.args):
+        if isinstance(argument, ast.arg):
+            argument.annotation = None
+    node.returns = None
+    return node
+
+
+def _is_skipped(node: ast.stmt) -> bool:
+    """Return whether a statement does nothing, imports, declares a type, or prints."""
+    if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or (
+        isinstance(node, ast.AnnAssign) and node.value is None
+    ):
+        return True
+    if not isinstance(node, ast.Expr):
+        return False
+    names = called_names(node.value)
+    return isinstance(node.value, ast.Constant) or (
+        bool(names) and (_PRINTING.fullmatch(names[0]) is not None or "get_logger" in names)
+    )
+
+
+# --- C++ ----------------------------------------------------------------------------------------------------------
+
+
+def _read_cpp(source: SourceText) -> Code:
+    blocks, functions = read_cpp_blocks(source.text)
+    starts = [match.end() for match in re.finditer("\n", source.text)]
+    code = Code()
+    for name, statements in blocks.items():
+        if name and not _FUNCTION.fullmatch(name):
+            continue
+        parts = [
+            _cpp_part(tokens, starts)
+            for statement in statements
+            for tokens in _split(statement)
+            if not is_output(tokens) or _has_throw(tokens)
+        ]
+        (code.functions if name in functions else code.others)[name] = parts
+    return code
+
+
+def _split(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:
+    """Yield the statement behind a condition without braces, and then the condition, as if it had braces."""
+    end = 0
+    if tokens and tokens[0].text in _BRANCHES:
+        end = 1
+    elif len(tokens) > 1 and tokens[0].text in _CONTROLS:
+        depth = 0
+        for index, token in enumerate(tokens[1:], 1):
+            depth += (token.text == "(") - (token.text == ")")
+            if depth == 0 and token.text == ")":
+                end = index + 1
+                break
+    if 0 < end < len(tokens):
+        yield from _split(tokens[end:])
+        yield tokens[:end]
+    else:
+        yield tokens
+
+
+def _has_throw(tokens: Sequence[Token]) -> bool:
+    return any(token.text == "throw" for token in tokens)
+
+
+def _cpp_part(tokens: Sequence[Token], starts: Sequence[int]) -> Part:
+    has_message = _has_throw(tokens)
+    texts = [_token_text(token, has_message=has_message) for token in tokens if token.text != "override"]
+    lines = [bisect.bisect_right(starts, token.start) + 1 for token in (tokens[0], tokens[-1])]
+    return Part(" ".join(texts), *lines)
+
+
+def _token_text(token: Token, *, has_message: bool) -> str:
+    """Return a token as it is compared: without the texts of errors, and with numbers in one form."""
+    if token.kind is TokenKind.NUMBER:
+        return normal_number(token.text, is_divided=True)
+    return '""' if has_message and token.kind is TokenKind.TEXT else token.text

@@ -1,0 +1,78 @@
+"""The names that a source in Python binds, and those that it uses although nothing defines them."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Iterator
+
+_PYTHON_2 = frozenset(
+    {
+        *(
+            "unicode",
+            "xrange",
+            "raw_input",
+            "basestring",
+            "unichr",
+            "reduce",
+            "file",
+            "long",
+            "cmp",
+            "reload",
+            "execfile",
+        ),
+        *("apply", "buffer", "coerce", "intern", "WindowsError", "_"),
+    }
+)
+"""The builtins of Python 2, and those that other programs add."""
+_DYNAMIC = frozenset({"globals", "exec", "execfile", "setattr", "builtins", "__builtins__", "vars"})
+"""The names by which a source can define others."""
+
+
+def bound_names(tree: ast.AST) -> Iterator[str]:
+    """Yield the names that a source binds anywhere, each time that it does; ``*`` for all names of a module."""
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            yield node.name
+        elif isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            yield node.id
+        elif isinstance(node, ast.arg):
+            yield node.arg
+        elif isinstance(node, ast.alias):
+            yield node.asname or node.name.partition(".")[0]
+        elif isinstance(node, (ast.Global, ast.Nonlocal)):
+            yield from node.names
+        elif isinstance(name := getattr(node, "name", None), str):
+            yield name  # of an error, a pattern or the parameter of a type
+        elif isinstance(rest := getattr(node, "rest", None), str):
+            yield rest
+
+
+def undefined_names(tree: ast.AST) -> dict[str, ast.Name]:
+    """Return the first use of each name that nothing in a source certainly defines.
+
+    Uses in annotations, which need not be evaluated, and below ``try`` are left out.
+    """
+    bound = set(bound_names(tree))
+    used = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
+    names = {node.id for node in used} - bound - set(dir(builtins)) - _PYTHON_2
+    if "*" in bound or not _DYNAMIC.isdisjoint(node.id for node in used):
+        return {}
+    names = {name for name in names if not name.startswith("__")}
+    skipped = {id(each) for part in _uncertain_parts(tree) for each in ast.walk(part)} if names else set()
+    found: dict[str, ast.Name] = {}
+    for node in sorted(used, key=lambda node: (node.lineno, node.col_offset)):
+        if node.id in names and id(node) not in skipped:
+            found.setdefault(node.id, node)
+    return found
+
+
+def _uncertain_parts(tree: ast.AST) -> Iterator[ast.AST]:
+    """Yield the annotations, and the statements whose errors are caught."""
+    for node in ast.walk(tree):
+        for name in ("annotation", "returns"):
+            annotation = getattr(node, name, None)
+            if annotation is not None:
+                yield annotation
+        if isinstance(node, ast.Try):
+            yield from node.body

@@ -1,0 +1,171 @@
+"""The lines of a review about Python files that still import or call what a module no longer has so."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+MODULE = """import os
+
+
+def load(path, log):
+    return read(path, log)
+
+
+class Plan:
+    def __init__(self, name, size=1):
+        self.name = name
+
+
+def walk():
+    pass
+"""
+FILES = {
+    "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "arm/arm/__init__.py": "",
+    "arm/arm/plans.py": MODULE,
+}
+CALLER = "from arm.plans import load, walk\nfrom . import plans\n\n\ndef main():\n    load('a', log)\n    walk()\n"
+
+
+@pytest.fixture
+def calls(repository, compare):
+    """Review a replacement in the module, and return the breaking lines of the caller with their places."""
+
+    def run(old, new, caller=CALLER, path="arm/arm/node.py", module="arm/arm/plans.py"):
+        assert old in MODULE
+        files = {**FILES, path: caller}
+        files[module] = files.pop("arm/arm/plans.py")
+        repository.commit(files)
+        repository.write({module: MODULE.replace(old, new)})
+        found = [each for each in compare(repository).subjects if each.path == path]
+        return [(str(change.sentence), change.location.line) for each in found for change in each.changes]
+
+    return run
+
+
+OLD_CALL = "calls '{}' of 'arm/arm/plans.py' with the old arguments; the new ones are {}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "caller", "expected"),
+    [
+        ("load(path, log)", "load(path, color, log)", CALLER,
+         [(OLD_CALL.format("load", "(path, color, log)"), 6)]),
+        ("name, size=1", "size, name", "from arm import plans as p\np.Plan('a')\n",
+         [(OLD_CALL.format("Plan", "(size, name)"), 2)]),
+        ("name, size=1", "name", "import arm.plans\narm.plans.Plan('a', size=3)\n",
+         [(OLD_CALL.format("Plan", "(name)"), 2)]),
+        ("def walk():", "def go():", CALLER, [("imports 'walk', which 'arm/arm/plans.py' no longer has", 1)]),
+        ("def walk():", "def go():", "from . import plans\nplans.walk()\n",
+         [("calls 'walk', which 'arm/arm/plans.py' no longer has", 2)]),
+    ],
+)  # fmt: skip
+def test_a_caller_whose_calls_no_longer_fit_is_breaking(calls, old, new, caller, expected):
+    assert calls(old, new, caller) == expected
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "caller"),
+    [
+        ("load(path, log)", "load(path, log, color=1)", CALLER),
+        ("load(path, log)", "load(path, color, log)", CALLER.replace("'a', log", "'a', 1, log")),
+        ("load(path, log)", "load(path, color, log)", CALLER.replace("'a', log", "*items")),
+        ("load(path, log)", "load(path, color, log)", "from other.plans import load\nload('a', log)\n"),
+        ("load(path, log)", "load(path, color, log)", "from arm.plans import load\nload = f\nload('a', log)\n"),
+        ("def load", "@cached\ndef load", CALLER),
+        ("def walk():", "from arm.walking import walk\n\n\ndef go():", CALLER),
+        ("def walk():", "from arm.walking import *\n\n\ndef go():", CALLER),
+        ("def walk():", "def go():", "try:\n    from arm.plans import walk\nexcept ImportError:\n    walk = None\n"),
+    ],
+)
+def test_calls_that_fit_and_modules_that_are_not_certain_are_not_told(calls, old, new, caller):
+    assert calls(old, new, caller) == []
+
+
+def test_a_module_beside_a_script_is_found(calls):
+    caller = "from plans import load\nload('a', log)\n"
+    found = calls("load(path, log)", "load(path, color, log)", caller, "arm/scripts/n.py", "arm/scripts/plans.py")
+    assert [line for _, line in found] == [2]
+    assert calls("load(path, log)", "load(log)", caller, "arm/scripts/n.py", "arm/other/plans.py") == []
+
+
+def test_an_import_of_a_module_that_is_gone_is_breaking(repository, compare):
+    repository.commit({**FILES, "arm/arm/node.py": CALLER, "arm/arm/other.py": "import plans\nimport arm\n"})
+    repository.write({"arm/arm/plans.py": None})
+    result = compare(repository)
+    sentence = "imports 'arm/arm/plans.py', which does not exist any more"
+    assert sentences(subject(result, "arm/arm/node.py")) == [sentence, sentence]
+    assert breaking(result).count(sentence) == 2
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("load(path, log)", "load(path, color, log)",
+         ["function 'load': arguments (path, log) -> (path, color, log)"], True),
+        ("load(path, log)", "load(path, log=None)",
+         ["function 'load': arguments (path, log) -> (path, log=None)"], False),
+        ("name, size=1", "name, size", ["class 'Plan': arguments (name, size=1) -> (name, size)"], True),
+        ("def walk", "def stop(now):\n    pass\n\n\ndef walk", ["functions added: 'stop' (now)"], False),
+    ],
+)  # fmt: skip
+def test_other_arguments_of_a_module_are_told(repository, compare, old, new, expected, is_breaking):
+    repository.commit(FILES)
+    repository.write({"arm/arm/plans.py": MODULE.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/arm/plans.py")) == expected
+    assert bool(breaking(result)) is is_breaking
+
+
+def test_the_functions_of_a_class_with_another_name_are_compared(repository, compare):
+    repository.commit(FILES)
+    method = "        self.name = name\n\n    def run(self):\n        go({})\n"
+    text = MODULE.replace("        self.name = name\n", method)
+    repository.commit({"arm/arm/plans.py": text.format(1)})
+    repository.write({"arm/arm/plans.py": text.format("now()").replace("class Plan", "class Plans")})
+    assert sentences(subject(compare(repository), "arm/arm/plans.py")) == [
+        "class 'Plan' (name, size=1) renamed to 'Plans' (name, size=1)",
+        "code changed in 'Plans.run()'",
+    ]
+
+
+def test_a_class_in_a_folder_that_is_no_package_is_told_and_not_breaking(repository, compare):
+    repository.commit({**FILES, "arm/arm/tools/grip.py": "class Grip:\n    def __init__(self, force):\n        pass\n"})
+    repository.write({"arm/arm/tools/grip.py": "class Hold:\n    def __init__(self, width, time):\n        pass\n"})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/arm/tools/grip.py")) == [
+        "classes added: 'Hold' (width, time)",
+        "classes removed: 'Grip' (force)",
+    ]
+    assert breaking(result) == []
+
+
+SETUP = "from setuptools import setup\nsetup(name='arm', version='1.0.0', packages=['arm'])\n"
+METHODS = "class Plan:\n    def __init__(self):\n        f(self.on_end)\n\n    def run(self, goal):\n        pass\n\n"
+METHODS += "    def on_end(self):\n        pass\n\n    def _own(self):\n        pass\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("def run(self, goal)", "def run(self, goal, time)",
+         "function 'Plan.run': arguments (goal) -> (goal, time)", True),
+        ("def run(self, goal)", "def run(self, goal, time=1)",
+         "function 'Plan.run': arguments (goal) -> (goal, time=1)", False),
+        ("def run(self, goal)", "def runs(self, goal)",
+         "function 'Plan.run' (goal) renamed to 'Plan.runs' (goal)", True),
+        ("    def run(self, goal):\n        pass\n\n", "", "functions removed: 'Plan.run' (goal)", True),
+        ("    def on_end(self):\n        pass\n", "", "code removed: 'Plan.on_end()'", False),
+        ("    def _own(self):\n        pass\n", "", "code removed: 'Plan._own()'", False),
+        ("class Plan:", "class Plan(Base):", "code changed in 'Plan'", False),
+    ],
+)  # fmt: skip
+def test_methods_of_an_installed_class_are_told(repository, compare, old, new, expected, is_breaking):
+    repository.commit({**FILES, "arm/setup.py": SETUP, "arm/arm/plans.py": METHODS})
+    repository.write({"arm/arm/plans.py": METHODS.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/arm/plans.py")) == [expected]
+    assert bool(breaking(result)) is is_breaking

@@ -1,0 +1,248 @@
+"""The lines of a review about functions whose code changes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+PYTHON = '''"""Drive."""
+class Driver(Node):
+    """A driver."""
+
+    limits = limit(1)
+
+    def __init__(self):
+        super().__init__("driver")
+        self.create_subscription(String, "mode", self.on_mode, 10)
+        self.create_service(Trigger, "home", self.on_home)
+        self.create_timer(0.1, self.on_timer)
+        self.server = ActionServer(self, Reach, "reach", self.reach)
+
+    def on_mode(self, msg: String) -> None:
+        """Take a mode."""
+        self.mode = msg.data
+        self.get_logger().info("mode")
+
+    def on_home(self, request, response):
+        if self.mode:
+            self.go(request)
+            return response
+        raise ValueError("no mode")
+
+    def on_timer(self):
+        for item in self.items:
+            item.step()
+
+    def reach(self, goal):
+        goal.succeed()
+
+
+def clamp(value, low):
+    return max(value, low)
+'''
+CPP = """#include <rover.hpp>
+DRIVER_MACRO(Rover)
+void Rover::Rover() : Node("rover") {
+  sub_ = create_subscription<String>("mode", 10, std::bind(&Rover::onMode, this, _1));
+  timer_ = create_wall_timer(100ms, std::bind(&Rover::onTimer, this));
+}
+std::function<void(int)> Rover::onMode(const String & msg) {
+  if (msg.data.empty()) return;
+  RCLCPP_INFO(get_logger(), "mode");
+  mode_ = msg.data;
+  if (mode_ == last_) throw std::runtime_error("the mode is old");
+}
+void Rover::onTimer() {
+  for (auto & item : items_) {
+    item.step();
+    count(item);
+  }
+}
+"""
+
+
+@pytest.fixture
+def lines(repository, compare):
+    """Review another text of a source, and return the sentences."""
+
+    def run(path, old, new):
+        repository.commit({**MANIFEST, path: old})
+        repository.write({path: new})
+        result = compare(repository)
+        assert not breaking(result)
+        return [sentence for subject in result.subjects for sentence in sentences(subject)]
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("= msg.data", "= msg.data.split('#')", "code changed in 'Driver.on_mode()' (callback of subscription 'mode')"),
+        ("go(request)", "go(request.pose)", "code changed in 'Driver.on_home()' (callback of service 'home')"),
+        ("item.step()", "item.stop()", "code changed in 'Driver.on_timer()' (callback of a timer)"),
+        ("goal.succeed()", "goal.abort()", "code changed in 'Driver.reach()' (callback of action 'reach')"),
+        ("            return response\n", "        return response\n",
+         "code changed in 'Driver.on_home()' (callback of service 'home')"),
+        ("max(value", "min(value", "code changed in 'clamp()'"),
+        ("(value, low)", "(value, low, high)", "code changed in 'clamp()'"),
+        ("def clamp", "def _floor", "code renamed: 'clamp()' -> '_floor()'"),
+        ("def clamp", "def half(x):\n    return x / 2\n\n\ndef clamp", "code added: 'half()'"),
+        ("\n    def reach(self, goal):\n        goal.succeed()\n", "", "code removed: 'Driver.reach()'"),
+        ("limit(1)", "limits()", "code changed in 'Driver'"),
+        ("class Driver", "import os\n\n\nclass Driver", "imports added: 'import os'"),
+        ("class Driver", "setup()\n\n\nclass Driver", "code changed outside of functions"),
+    ],
+)  # fmt: skip
+def test_functions_of_python_with_other_code_are_named(lines, old, new, expected):
+    assert old in PYTHON
+    assert lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('info("mode")', 'info("the mode")'),
+        ('        self.get_logger().info("mode")\n', ""),
+        ('"no mode"', 'f"no {mode}"'),
+        ("Take a mode", "Read a mode"),
+        ("msg: String) -> None", "msg)"),
+        ("max(value, low)", "max(\n        value,\n        low,\n    )  # the larger one"),
+    ],
+)
+def test_layout_comments_annotations_and_outputs_of_python_are_not_named(lines, old, new):
+    assert old in PYTHON
+    assert lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("= msg.data;", "= msg.data + 'x';", "code changed in 'Rover::onMode()' (callback of subscription 'mode')"),
+        ("    count(item);\n  }", "  }\n  count(item);", "code changed in 'Rover::onTimer()' (callback of a timer)"),
+        ("void Rover::onTimer", "void Rover::tick", "code renamed: 'Rover::onTimer()' -> 'Rover::tick()'"),
+        ("void Rover::onTimer", "int half(int x) { return x / 2; }\nvoid Rover::onTimer", "code added: 'half()'"),
+        ("DRIVER_MACRO(Rover)\n", "int size = half(3);\nDRIVER_MACRO(Rover)\n", "code changed outside of functions"),
+    ],
+)
+def test_functions_of_cpp_with_other_code_are_named(lines, old, new, expected):
+    assert old in CPP
+    assert lines("arm/src/rover.cpp", CPP, CPP.replace(old, new, 1)) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"the mode is old"', '"no new mode came"'),
+        ('  RCLCPP_INFO(get_logger(), "mode");\n', ""),
+        ("if (msg.data.empty()) return;", "if (msg.data.empty()) {\n    return;  // nothing\n  }"),
+        ("for (auto & item : items_) {", "for (auto &item: items_)\n  {"),
+        ("#include <rover.hpp>", "#include <rover.hpp>\n#include <vector>"),
+    ],
+)
+def test_layout_comments_and_outputs_of_cpp_are_not_named(lines, old, new):
+    assert old in CPP
+    assert lines("arm/src/rover.cpp", CPP, CPP.replace(old, new, 1)) == []
+
+
+def test_nothing_is_told_of_cpp_whose_braces_do_not_match(lines):
+    text = "void f() {\n#ifdef A\n  if (a) {\n#else\n  if (b) {\n#endif\n    c();\n  }\n}\nvoid g() { d(); }\n"
+    assert lines("arm/src/rover.cpp", text, text.replace("d()", "e()")) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("timer(0.1", "timer(0.2", "rate or period: create_timer(0.1) -> create_timer(0.2)"),
+        ("10)\n", '10)\n        self.declare_parameter("a", 1)\n', "parameters added: 'a' (1)"),
+        ("self.mode = ", "self.level = 4\n        self.mode = ", None),
+    ],
+)
+def test_a_function_that_other_lines_tell_of_is_not_named_again(lines, old, new, expected):
+    line = expected or "code changed in 'Driver.on_mode()' (callback of subscription 'mode')"
+    assert lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == [line]
+
+
+def test_a_function_is_named_for_what_other_lines_do_not_tell(lines):
+    new = PYTHON.replace("create_timer(0.1", "create_timer(0.2").replace('super().__init__("driver")', "f(4)")
+    new = new.replace("f(4)", 'super().__init__("driver")\n        self.reset()')
+    assert lines("arm/scripts/driver.py", PYTHON, new) == [
+        "rate or period: create_timer(0.1) -> create_timer(0.2)",
+        "code changed in 'Driver.__init__()'",
+    ]
+
+
+def test_functions_that_move_are_not_named(repository, compare):
+    function = "\n\ndef clamp(value, low):\n    return max(value, low)\n"
+    repository.commit({**MANIFEST, "arm/a.py": PYTHON, "arm/b.py": "B = 1\n"})
+    repository.commit({"arm/a.py": function.strip() + "\n\n\n" + PYTHON.replace(function, "")})
+    assert compare(repository, "HEAD~1..HEAD").subjects == []
+    repository.commit({"arm/a.py": PYTHON.replace(function, ""), "arm/b.py": f"B = 1\n{function}"})
+    assert compare(repository, "HEAD~1..HEAD").subjects == []
+
+
+def test_the_line_is_that_of_the_first_statement_that_differs(repository, compare):
+    repository.commit({**MANIFEST, "arm/scripts/driver.py": PYTHON})
+    repository.write({"arm/scripts/driver.py": PYTHON.replace("= msg.data", "= msg.mode")})
+    (found,) = compare(repository).subjects
+    assert found.changes[0].location.line == PYTHON[: PYTHON.index("= msg.data")].count("\n") + 1
+
+
+def test_a_class_in_cpp_may_have_a_macro_before_or_behind_its_name(lines):
+    text = "class ARM_PUBLIC Tool ARM_FINAL : public Base {\n  int size() { return 1 + x; }\n};\n"
+    assert lines("arm/src/tool.hpp", text, text.replace("+ x", "+ y")) == ["code changed in 'Tool::size()'"]
+
+
+USER = """import math
+from std_msgs.msg import String
+
+
+def half(value: String) -> None:
+    send(String(math.floor(value / 2)))
+
+
+def send(text):
+    try:
+        show(text)
+    except NameError:
+        pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("import math\n", "", "'math' is used, but nothing defines or imports it any more"),
+        ("def send(text)", "def post(text)", "'send' is used, but nothing defines or imports it any more"),
+    ],
+)
+def test_a_name_that_nothing_defines_any_more_is_breaking(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/scripts/half.py": USER})
+    repository.write({"arm/scripts/half.py": USER.replace(old, new)})
+    assert breaking(compare(repository)) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("import math\n", "from numpy import *\n"),
+        ("import math\n", "math = None\n"),
+        ("show(text)", "view(text)"),
+        ("value: String", "value: Text"),
+        ("value / 2", "unicode(value) / 2"),
+        ("value / 2", "[item for item in value][0]"),
+        ("import math\n", "print 'a'\n"),
+    ],
+)
+def test_a_name_that_may_be_defined_is_not_breaking(repository, compare, old, new):
+    repository.commit({**MANIFEST, "arm/scripts/half.py": USER})
+    repository.write({"arm/scripts/half.py": USER.replace(old, new)})
+    assert breaking(compare(repository)) == []
+
+
+def test_code_of_python_2_that_prints_a_list_is_read(lines):
+    text = "def plan(run):\n    print 'plan'\n    print [item for item in run.line]\n    run.go(run.line)\n"
+    assert lines("arm/scripts/plan.py", text, text.replace("go(run.line)", "go()")) == ["code changed in 'plan()'"]
