@@ -234,3 +234,25 @@ def test_long_list_of_names_has_the_added_and_removed_ones(changes_of):
     text = "hand: {joints: [finger_joint, old_joint]}\n"
     found, _ = changes_of(text, text.replace("old_joint", ", ".join(names)))
     assert found == [f"hand.joints: {', '.join(names)} added, old_joint removed"]
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("arm:\n  shoulder_controller:\n    type: TYPE\n    joint: shoulder\n", "arm/shoulder_controller"),
+        ("shoulder:\n  ros__parameters:\n    type: TYPE\n    joints: [shoulder]\n", "shoulder"),
+    ],
+)
+def test_another_type_of_a_controller_is_breaking(repository, compare, text, name):
+    old, new = "velocity_controllers/JointPositionController", "effort_controllers/JointPositionController"
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: text.replace("TYPE", old)})
+    repository.write({PATH: text.replace("TYPE", new)})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == (
+        f"the controller '{name}' is a '{new}' instead of a '{old}', with other topics and interfaces"
+    )
+
+
+def test_another_type_of_something_else_is_not_breaking(changes_of):
+    text = "filters:\n  - name: a\n    type: laser_filters/A\nmap:\n  type: costmap_2d/Static\n"
+    assert changes_of(text, text.replace("Static", "Layer")) == (["map.type costmap_2d/Static -> costmap_2d/Layer"], [])
