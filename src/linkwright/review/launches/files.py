@@ -21,6 +21,7 @@ from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renames import renamed_entry, renamed_names, with_new_names
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import added_entry, joined_titles, removed_entry, title
+from linkwright.review.launches.transforms import other_publisher
 from linkwright.review.launches.unused_arguments import add_unused_arguments
 from linkwright.review.list_changes import excerpts, shortened
 
@@ -135,6 +136,12 @@ def _add_lone_entries(
         file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=title(written), file=file)
+        publisher = other_publisher(entry, old_included.outline, new_included.outline, pair.versions.new)
+        if publisher is not None:
+            pair.add(
+                phrase("{change}; {entry} may publish its transform", change=text, entry=title(publisher)), location
+            )
+            continue
         stops_nodes = entry.kind == "include" and bool(old_included.started(entry) & stopped)
         pair.add(
             text, location, removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes)
