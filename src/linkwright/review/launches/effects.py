@@ -24,6 +24,7 @@ from linkwright.review.launches.outlines import (
     without_condition,
 )
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names, title
+from linkwright.review.launches.topic_tools import forwarding_reason
 from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
@@ -197,6 +198,9 @@ def setting_reason(
         return None
     if setting in _NAMES_OF_NODES:
         return _renaming_reason(old, new, old_outline, new_outline)
+    forwarding = forwarding_reason(entry, setting, old, new, (old_outline, new_outline))
+    if forwarding is not None:
+        return forwarding
     if setting == "arguments":
         old_names = _names_in(entry, old, old_outline)
         new_names = _names_in(entry, new, new_outline)
