@@ -148,3 +148,22 @@ def test_same_change_of_several_but_not_all_nodes_of_a_program_names_each(change
     assert changes_of("arm.launch", text, 'ns="arm"', 'ns="arm" output="screen"')[0] == [
         "node 'arm/driver' (arm/left), node 'arm/driver' (arm/right): output screen added"
     ]
+
+
+def test_switch_that_stops_several_actions_names_all_of_them_and_static_transforms_last(repository, compare):
+    text = """<launch>
+  <arg name="laser" default="true"/>
+  <group if="$(arg laser)">
+    <node pkg="tf" type="static_transform_publisher" name="still" args="0 0 0 0 0 0 base laser 20"/>
+    <include file="$(find laser)/laser.launch"/>
+    <node pkg="laser" type="filter" name="filter"/>
+  </group>
+</launch>
+"""
+    repository.commit({"arm/launch/arm.launch": text})
+    repository.write({"arm/launch/arm.launch": text.replace("true", "false")})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == (
+        "by default, include of '$(find laser)/laser.launch', node 'laser/filter', "
+        "node 'tf/static_transform_publisher' of 'laser' do not start any more"
+    )

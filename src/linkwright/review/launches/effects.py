@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import offers_frame, type_reason
 from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
 from linkwright.review.launches.conditions import condition_holds
@@ -75,6 +76,8 @@ _INPUTS = re.compile(
     r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
 )
 """The topics to which those programs subscribe. They publish others."""
+_Use = tuple[Entry, str, Phrase]
+"""An action, its setting that uses an argument, and why a new default of the argument is breaking for it."""
 _ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
@@ -273,15 +276,25 @@ def _default_reason(
             return phrase("callers that pass the path of a file instead of its name fail")
     if old_value.lower() in _TRUTH and re.fullmatch(r"[a-z]\w*", new_value.lower()) and new_value.lower() not in _TRUTH:
         return phrase("callers that pass '{value}' fail", value=old_value)
-    reasons = _reasons_of_uses(argument.name, old_outline, new_outline)
-    reason = next((reason for reason in reasons if reason is not None), None)
+    uses = list(_reasons_of_uses(argument.name, old_outline, new_outline))
+    stopped = list(dict.fromkeys(title(entry) for entry, setting, _ in _importance(uses) if setting == CONDITION))
+    if len(stopped) > 1:
+        return phrase("by default, {entries} do not start any more", entries=joined_first(stopped, MAX_NAMES))
+    if stopped:
+        return phrase("by default, {entry} does not start any more", entry=stopped[0])
+    reason = next((reason for _, _, reason in uses), None)
     if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
         return name_reason(old_value)
     return reason
 
 
-def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[Phrase | None]:
-    """Yield why the new default of an argument is breaking for the actions that use it."""
+def _importance(uses: list[_Use]) -> list[_Use]:
+    """Return uses of an argument with those of static transforms last."""
+    return sorted(uses, key=lambda use: use[0].name.startswith(TRANSFORM_PUBLISHERS))
+
+
+def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[_Use]:
+    """Yield the settings of actions that use an argument and for which its new default is breaking."""
     variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in new_outline.entries:
         if entry.kind == "argument":
@@ -289,9 +302,8 @@ def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchO
         for setting, value in entry.settings.items():
             if variable.search(value):
                 reason = setting_reason(entry, setting, value, value, old_outline, new_outline)
-                if reason is not None and setting == CONDITION:
-                    reason = phrase("by default, {entry} does not start any more", entry=title(entry))
-                yield reason
+                if reason is not None:
+                    yield entry, setting, reason
 
 
 def _condition(entry: Entry, outline: LaunchOutline) -> str:

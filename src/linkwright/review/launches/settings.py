@@ -206,8 +206,10 @@ class SettingChanges:
 
 
 def _stopped_reason(programs: Collection[Program]) -> Phrase:
-    names = quoted_names(sorted({name for _, name in programs})[:MAX_NAMES])
-    return phrase("by default, {names} does not start any more", names=names)
+    names = [quoted_names([name]) for name in sorted({name for _, name in programs})]
+    if len(names) == 1:
+        return phrase("by default, {entry} does not start any more", entry=names[0])
+    return phrase("by default, {entries} do not start any more", entries=joined_first(names, MAX_NAMES))
 
 
 def _joined_settings(
