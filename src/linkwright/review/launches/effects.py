@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.breaking import name_reason
+from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import offers_frame, type_reason
 from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
@@ -24,6 +24,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
+from linkwright.review.launches.sides import Side, side_of
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names, title
 from linkwright.review.launches.topic_tools import forwarding_reason
 from linkwright.review.list_changes import list_items
@@ -67,15 +68,6 @@ _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
-_SUBSCRIBERS = re.compile(
-    r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
-    r"robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
-)
-_INPUTS = re.compile(
-    r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
-    r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
-)
-"""The topics to which those programs subscribe. They publish others."""
 _Use = tuple[Entry, str, Phrase]
 """An action, its setting that uses an argument, and why a new default of the argument is breaking for it."""
 _ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
@@ -191,12 +183,12 @@ def setting_reason(
         return None
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
-        is_input = _SUBSCRIBERS.match(entry.name) and _INPUTS.fullmatch(source.lstrip("/~"))
-        if is_input or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
+        side = side_of(entry.name, source, new_outline.root)
+        if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
         if old is not None and old_outline.resolved(old) in _targets(entry, new_outline):
             return None  # another topic of the node has the name now
-        return _remapping_reason(source, old, new, old_outline, new_outline)
+        return _remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
     if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
         return None
     if setting in _NAMES_OF_NODES:
@@ -369,16 +361,31 @@ def _resolved_name(text: str | None, outline: LaunchOutline) -> str:
 
 
 def _remapping_reason(
-    source: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+    source: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
+    *,
+    is_known: bool = False,
 ) -> Phrase | None:
-    """Return why it is breaking that a name is remapped otherwise, or None if the name is the same."""
+    """Return why it is breaking that a name is remapped otherwise, or None if the name is the same.
+
+    Args:
+        source: the name in the node.
+        old: the old name outside of it; None if it was the same.
+        new: the new name outside of it; None if it is the same.
+        old_outline: the old file.
+        new_outline: the new file.
+        is_known: whether the node is known to publish or serve the name, and not only to use it.
+    """
     old_name = old_outline.resolved(source if old is None else old)
     new_name = new_outline.resolved(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
     if _CODE.search(new_name) or _has_new_variable(old_name, new_name):
         return None  # the name may be the same
-    return name_reason(old_name)
+    return name_reason(old_name) if is_known else possible_name_reason(old_name)
 
 
 def _has_new_variable(old: str, new: str) -> bool:
