@@ -268,8 +268,10 @@ def test_list_without_names_has_the_smallest_edit_with_its_values(changes_of):
     old, new = steps("0.0 -60", "-0.1 -60", "0.0 60", "-0.1 60", "0.0 -60"), steps("-0.2 -60", "-0.2 60", "-0.2 -60")
     found, _ = changes_of(old, new)
     assert found == [
-        "list actions: 3 values changed, 4 parts removed: [0].target.y 0.0 -> -0.2; [2].target.y 0.0 -> -0.2; "
-        "[4].target.y 0.0 -> -0.2; [old 2] removed: action move, target.x 0.0, target.y -0.1, target.turn -60; "
-        "[old 3].action grasp removed; [old 6] removed: action move, target.x 0.0, target.y -0.1, target.turn 60; "
-        "[old 7].action grasp removed"
+        (
+            "list actions: 3 values changed, 4 parts removed: [0].target.y 0.0 -> -0.2; [2].target.y 0.0 -> -0.2; "
+            "[4].target.y 0.0 -> -0.2; [old 2] removed: action move, target.x 0.0, target.y -0.1, target.turn -60; "
+            "[old 3].action grasp removed; [old 6] removed: action move, target.x 0.0, target.y -0.1, target.turn 60; "
+            "[old 7].action grasp removed"
+        )
     ]
