@@ -300,6 +300,8 @@ def test_joined_path_of_a_substitution_instead_of_a_list_is_not_the_substitution
 """
     old = 'PathJoinSubstitution(FindExecutable(name="xacro"))'
     assert changes_of("arm.launch.py", text, old, 'FindExecutable(name="xacro")')[0] == [
-        "node 'arm/driver': parameter model $(command PathJoinSubstitution($(find-exec xacro)) arm.urdf) -> "
-        "$(command xacro arm.urdf)"
+        (
+            "node 'arm/driver': parameter model $(command PathJoinSubstitution($(find-exec xacro)) arm.urdf) -> "
+            "$(command xacro arm.urdf)"
+        )
     ]
