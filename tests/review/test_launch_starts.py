@@ -167,3 +167,20 @@ def test_switch_that_stops_several_actions_names_all_of_them_and_static_transfor
         "by default, include of '$(find laser)/laser.launch', node 'laser/filter', "
         "node 'tf/static_transform_publisher' of 'laser' do not start any more"
     )
+
+
+SPAWN = '<node pkg="ros_gz_sim" exec="create" args="-topic robot_description"/>'
+SPAWNS = f'<launch><node pkg="rviz2" exec="rviz2"/>{SPAWN}</launch>'
+
+
+@pytest.mark.parametrize(
+    ("new", "is_breaking"),
+    [
+        ("", True),
+        ('<include file="$(find-pkg-share arm)/launch/spawn.launch.xml"/>', False),
+        ('<node pkg="gazebo_ros" exec="spawn_entity.py" args="-topic robot_description"/>', False),
+        (SPAWN.replace("<node", '<node if="false"'), True),
+    ],
+)
+def test_robot_that_is_not_spawned_any_more_is_breaking(changes_of, new, is_breaking):
+    assert bool(changes_of("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking

@@ -37,6 +37,8 @@ _SPAWNING = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
 """Programs that tell another program once to create a robot, and offer nothing themselves."""
+_SPAWNING_FILE = re.compile(r"spawn|create")
+"""The names of included files and commands that create robots."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
 _NAME = re.compile(r"[~/\w]+")
 _NAMES_OF_NODES = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
@@ -93,6 +95,8 @@ def removal_reason(
         return None
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
+    if _spawns(entry):
+        return None if _spawns_as_much(outline, new) else phrase("the robot or model is not spawned any more")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
     if entry.kind == "include":
@@ -109,6 +113,19 @@ def removal_reason(
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
     return _served_reason(entry, names, new)
+
+
+def _spawns(entry: Entry) -> bool:
+    """Return whether a node tells a simulator once to create a robot or model."""
+    return entry.kind == "node" and _SPAWNING.fullmatch(entry.name) is not None and "remove" not in entry.name
+
+
+def _spawns_as_much(old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether a file creates as many robots as before, or includes another file that may do it."""
+    counts = [sum(map(_spawns, outline.entries)) for outline in (old, new)]
+    known = {entry.name for entry in old.entries}
+    may_include = any(_SPAWNING_FILE.search(entry.name) and entry.name not in known for entry in new.entries)
+    return counts[1] >= counts[0] or may_include
 
 
 def _publishes_states(outline: LaunchOutline) -> bool:
@@ -175,7 +192,7 @@ def setting_reason(
         return _remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return _renaming_reason(old, new, old_outline, new_outline)
-    if entry.kind in ("node", "include") and setting == CONDITION and not offers_nothing(entry):
+    if entry.kind in ("node", "include") and setting == CONDITION and (_spawns(entry) or not offers_nothing(entry)):
         held = condition_holds(old_outline.resolved(old or ""))
         does_not_hold = condition_holds(new_outline.resolved(new or "")) is False
         return phrase("by default, it does not start any more") if held and does_not_hold else None
