@@ -12,7 +12,7 @@ from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import offers_frame, type_reason
 from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
 from linkwright.review.launches.conditions import condition_holds
-from linkwright.review.launches.matching import name_likeness
+from linkwright.review.launches.matching import loaded_class, name_likeness
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -200,7 +200,7 @@ def setting_reason(
         return None
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
-        side = side_of(entry.name, source, new_outline.root)
+        side = side_of(loaded_class(entry) or entry.name, source, new_outline.root)
         if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
         if old is not None and old_outline.resolved(old) in _targets(entry, new_outline):

@@ -147,10 +147,15 @@ def _by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
     return groups
 
 
+def loaded_class(entry: Entry) -> str | None:
+    """Return the class that a nodelet loads, or None for another action."""
+    match = _NODELET.match(entry.settings.get("arguments", "")) if entry.name == "nodelet/nodelet" else None
+    return None if match is None else match[1]
+
+
 def _load_other_classes(old: Entry, new: Entry) -> bool:
     """Return whether two nodelets are of different classes."""
-    nodelets = [_NODELET.match(entry.settings.get("arguments", "")) for entry in (old, new)]
-    classes = {match[1] for match in nodelets if match is not None}
+    classes = {loaded for entry in (old, new) if (loaded := loaded_class(entry)) is not None}
     return old.name == new.name == "nodelet/nodelet" and len(classes) > 1
 
 
