@@ -18,7 +18,7 @@ _SUFFIXES = frozenset({".sh", ".bash", ".zsh", ".rules", ".service", ".dockerfil
 _NAMES = re.compile(r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env")
 _PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
 """A line of a list of packages."""
-_MAX_LINES = 3
+_MAX_LINES = 6
 """The number of changed lines up to which those of a file that is no list are shown."""
 _MAX_LENGTH = 160
 _MAX_BYTES = 1 << 18
