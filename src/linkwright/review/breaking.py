@@ -66,7 +66,7 @@ def name_reason(name: str) -> Phrase:
 
 
 def possible_name_reason(name: str) -> Phrase:
-    """Return why it may be breaking that a name is gone of which nobody knows whether the node offers or uses it."""
+    """Return why it may be breaking that a name is gone which the node offers or only uses."""
     return phrase("if the node publishes or serves '{name}', programs that use it do not find it", name=name)
 
 

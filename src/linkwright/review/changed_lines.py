@@ -19,7 +19,7 @@ _NAMES = re.compile(r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|req
 _PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
 """A line of a list of packages."""
 _MAX_LINES = 6
-"""The number of changed lines up to which those of a file that is no list are shown."""
+"""The number of changed lines up to which they are shown, except in a list of packages."""
 _MAX_LENGTH = 160
 _MAX_BYTES = 1 << 18
 _MIN_SIMILARITY = 0.5
@@ -28,7 +28,7 @@ _MIN_SIMILARITY = 0.5
 def changed_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
     """Return the lines that a text file has gained and lost, or None for a file of another kind.
 
-    Comments and empty lines are left out. Of many lines, only the number is told.
+    Comments and empty lines are left out. Many lines are only counted.
     """
     if file.old_path is None or file.new_path is None or file.is_submodule or not _has_lines(file.path):
         return None
