@@ -14,7 +14,7 @@ import pytest
          '`KERNEL=="ttyUSB*", SYMLINK+="sonar"` added'),
         ("start.sh", "run a && run b\n", "run a\n# && run b\n", "run a && run b -> run a"),
         ("Dockerfile", "FROM a\nRUN a \\\n  b\n", "FROM a\nRUN a b\n", None),
-        ("start.sh", "a b\n", "a b\n" + "".join(f"echo {n} x\n" for n in range(5)), "5 lines added"),
+        ("start.sh", "a b\n", "a b\n" + "".join(f"echo {n} x\n" for n in range(8)), "8 lines added"),
         ("notes.md", "a\n", "b\n", None),
     ],
 )  # fmt: skip
