@@ -249,7 +249,7 @@ def test_another_type_of_a_controller_is_breaking(repository, compare, text, nam
     repository.write({PATH: text.replace("TYPE", new)})
     ((_, change),) = compare(repository).breaking_changes
     assert str(change.reason) == (
-        f"the controller '{name}' is a '{new}' instead of a '{old}', with other topics and interfaces"
+        f"the controller '{name}' has the type '{new}' instead of '{old}', with other topics and interfaces"
     )
 
 

@@ -65,7 +65,7 @@ class NameRules:
         controller = _typed_controller(parameter, old, new)
         if controller is not None:
             return phrase(
-                "the controller '{name}' is a '{new}' instead of a '{old}', with other topics and interfaces",
+                "the controller '{name}' has the type '{new}' instead of '{old}', with other topics and interfaces",
                 name=controller,
                 old=old,
                 new=new,
