@@ -99,7 +99,7 @@ def test_removed_remappings_and_added_parameters_of_a_node_are_one_change_each(c
     assert changes_with_reasons(new, old=old) == {
         "node 'arm/hand': parameters added: x 1, y 2, z 3": None,
         "node 'arm/hand': remappings removed: a -> arm/a, b -> arm/b, c -> arm/c": (
-            "programs that use the name 'arm/a, arm/b, arm/c' do not find it"
+            "if the node publishes or serves 'arm/a, arm/b, arm/c', programs that use it do not find it"
         ),
     }
 
@@ -291,3 +291,17 @@ def test_prefix_of_frames_that_is_unknown_is_not_breaking(changes_of):
 """
     found, found_breaking = changes_of("arm.launch.py", text, "{}", '{"frame_prefix": Mixin.prefix()}')
     assert (len(found), found_breaking) == (1, [])
+
+
+def test_joined_path_of_a_substitution_instead_of_a_list_is_not_the_substitution(changes_of):
+    text = """def generate_launch_description():
+    command = Command([PathJoinSubstitution(FindExecutable(name="xacro")), " arm.urdf"])
+    return LaunchDescription([Node(package="arm", executable="driver", parameters=[{"model": command}])])
+"""
+    old = 'PathJoinSubstitution(FindExecutable(name="xacro"))'
+    assert changes_of("arm.launch.py", text, old, 'FindExecutable(name="xacro")')[0] == [
+        (
+            "node 'arm/driver': parameter model $(command PathJoinSubstitution($(find-exec xacro)) arm.urdf) -> "
+            "$(command xacro arm.urdf)"
+        )
+    ]

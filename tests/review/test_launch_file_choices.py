@@ -45,7 +45,8 @@ def test_path_that_another_argument_begins(reasons, viewer, caller, is_breaking)
     text = FILE.format(viewer=viewer)
     found = reasons(text, "$(var description))", "$(var viewer))", caller)
     reason = "the value that a caller passes for 'description' chooses another file"
-    assert found[SENTENCE] == (reason if is_breaking else None)
+    (sentence,) = [sentence for sentence in found if sentence.startswith(SENTENCE)]
+    assert found[sentence] == (reason if is_breaking else None)
 
 
 @pytest.mark.parametrize(
@@ -60,3 +61,22 @@ def test_fixed_path_that_depends_on_an_argument_now(reasons, path, end):
     found = reasons(FILE.format(viewer="v"), "/arm.xacro", f"/{path}.xacro")
     text = f"the file '$(find-pkg-share arm)/urdf/{path}.xacro' depends on '{name}' now; by default, it is {end}"
     assert found[text] is None
+
+
+def test_path_with_other_arguments_has_the_files_that_it_chooses_by_default(reasons):
+    text = """<launch>
+  <arg name="team" default="1"/>
+  <include file="$(find-pkg-share gazebo)/empty.launch.xml">
+    <arg name="world" value="worlds/team$(var team).world"/>
+  </include>
+</launch>
+"""
+    found = reasons(text, "worlds/team$(var team)", "worlds/$(var team)")
+    assert found["by default, the file is 'worlds/1.world' instead of 'worlds/team1.world'"] is None
+
+
+def test_lost_argument_of_a_path_has_the_files_that_are_chosen_by_default(reasons):
+    text = FILE.format(viewer="viewer")
+    found = reasons(text, "$(var description))", "$(var viewer))")
+    folders = [f"'$(find-pkg-share {name})/config/view.rviz'" for name in ("viewer", "arm_description")]
+    assert f"{SENTENCE}; by default, it is {folders[0]} instead of {folders[1]}" in found

@@ -87,7 +87,7 @@ YAML = """launch:
          "node 'arm/teleop': remapping cmd_vel $(var cmd_vel_out) added", False),
         ('("joy", "arm/joy")', '', "node 'arm/teleop': remapping joy arm/joy removed", True),
         ('        Node(package="ros_gz_sim", executable="create", name="create"),\n', "",
-         "node 'ros_gz_sim/create' removed: name create", False),
+         "node 'ros_gz_sim/create' removed: name create", True),
         ('        Node(package="controller_manager", executable="spawner", arguments=["arm_controller", "-v"]),\n',
          "", "node 'controller_manager/spawner' of 'arm_controller' removed: arguments [arm_controller, -v]", True),
         ('"--child-frame-id", "lidar"', '"--child-frame-id", "laser"',

@@ -76,6 +76,55 @@ def test_include_of_a_file_with_another_role_does_not_replace_it(reasons):
     assert list(found.values()) == [None, STOPS]
 
 
+DRIVER = """<launch>
+  <arg name="host" default="a"/>
+  <arg name="target" default="b"/>
+  <arg name="mode"/>
+  <include file="$(find laser)/old.launch">
+    <arg name="host" value="$(arg host)"/>
+    <arg name="target" value="$(arg target)"/>
+    <arg name="mode" value="$(arg mode)"/>
+  </include>
+</launch>
+"""
+TARGET = '    <arg name="target" value="$(arg target)"/>\n'
+
+
+def _driver(repository, compare, text: str):
+    repository.commit({"arm/launch/arm.launch": DRIVER})
+    repository.write({"arm/launch/arm.launch": text})
+    changes = subject(compare(repository), "arm/launch/arm.launch").changes
+    return {str(each.sentence): None if each.reason is None else str(each.reason) for each in changes}
+
+
+def test_include_of_another_file_of_a_package_with_most_arguments_replaces_the_old_one(repository, compare):
+    file = "$(find laser)/launch/sensor.launch"
+    found = _driver(repository, compare, DRIVER.replace("$(find laser)/old.launch", file).replace(TARGET, ""))
+    assert found == {
+        f"include of '$(find laser)/old.launch' replaced by include of '{file}'": None,
+        f"include of '{file}': target $(arg target) removed": None,
+        "argument 'target' is not used any more": "a value that a caller passes for 'target' has no effect",
+    }
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        DRIVER.replace("laser)/old.launch", "camera)/start.launch"),
+        DRIVER.replace("laser)/old.launch", "laser)/start.launch").replace("mode)", "host)").replace(TARGET, ""),
+    ],
+)
+def test_include_of_another_package_or_with_other_arguments_does_not_replace_the_old_one(repository, compare, text):
+    assert STOPS in _driver(repository, compare, text).values()
+
+
+@pytest.mark.parametrize("use", ["<!-- $(arg target) -->", "$(eval arg('target') == 'b')"])
+def test_argument_in_an_expression_is_used_and_one_in_a_comment_is_not(repository, compare, use):
+    text = use if "<" in use else f'    <arg name="x" value="{use}"/>'
+    found = _driver(repository, compare, DRIVER.replace(TARGET, text))
+    assert ("argument 'target' is not used any more" in found) is ("<" in use)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [

@@ -194,7 +194,7 @@ def test_inserted_item_of_a_list_does_not_shift_the_others(changes_of):
 
 def test_many_changes_of_a_list_are_one_line(changes_of):
     found, _ = changes_of(POINTS, POINTS.replace("0.0,", "2.0,"))
-    assert found == ["list vertices: 22 values changed"]
+    assert found[0].startswith("list vertices: 22 values changed: [0][0] 0.0 -> 2.0; ")
 
 
 LAYERS = """costmap:
@@ -234,3 +234,44 @@ def test_long_list_of_names_has_the_added_and_removed_ones(changes_of):
     text = "hand: {joints: [finger_joint, old_joint]}\n"
     found, _ = changes_of(text, text.replace("old_joint", ", ".join(names)))
     assert found == [f"hand.joints: {', '.join(names)} added, old_joint removed"]
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("arm:\n  shoulder_controller:\n    type: TYPE\n    joint: shoulder\n", "arm/shoulder_controller"),
+        ("shoulder:\n  ros__parameters:\n    type: TYPE\n    joints: [shoulder]\n", "shoulder"),
+    ],
+)
+def test_another_type_of_a_controller_is_breaking(repository, compare, text, name):
+    old, new = "velocity_controllers/JointPositionController", "effort_controllers/JointPositionController"
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: text.replace("TYPE", old)})
+    repository.write({PATH: text.replace("TYPE", new)})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == (
+        f"the controller '{name}' has the type '{new}' instead of '{old}', with other topics and interfaces"
+    )
+
+
+def test_another_type_of_something_else_is_not_breaking(changes_of):
+    text = "filters:\n  - name: a\n    type: laser_filters/A\nmap:\n  type: costmap_2d/Static\n"
+    assert changes_of(text, text.replace("Static", "Layer")) == (["map.type costmap_2d/Static -> costmap_2d/Layer"], [])
+
+
+def test_list_without_names_has_the_smallest_edit_with_its_values(changes_of):
+    def steps(*values: str) -> str:
+        moves = [
+            f"  - action: move\n    target: {{x: 0.0, y: {y}, turn: {turn}}}\n" for y, turn in map(str.split, values)
+        ]
+        return "actions:\n" + "  - action: grasp\n".join(moves)
+
+    old, new = steps("0.0 -60", "-0.1 -60", "0.0 60", "-0.1 60", "0.0 -60"), steps("-0.2 -60", "-0.2 60", "-0.2 -60")
+    found, _ = changes_of(old, new)
+    assert found == [
+        (
+            "list actions: 3 values changed, 4 parts removed: [0].target.y 0.0 -> -0.2; [2].target.y 0.0 -> -0.2; "
+            "[4].target.y 0.0 -> -0.2; [old 2] removed: action move, target.x 0.0, target.y -0.1, target.turn -60; "
+            "[old 3].action grasp removed; [old 6] removed: action move, target.x 0.0, target.y -0.1, target.turn 60; "
+            "[old 7].action grasp removed"
+        )
+    ]

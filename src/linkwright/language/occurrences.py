@@ -17,6 +17,7 @@ from linkwright.language.definitions import NameKind
 from linkwright.language.expressions import decode_entities
 from linkwright.language.grammar import PREFIX, XACRO
 from linkwright.loading.deferred import lazy_pattern
+from linkwright.schema.name_tags import JOINT_TAG, LINK_TAG
 from linkwright.xacro.expressions.template import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
@@ -47,8 +48,6 @@ _REFERENCES: dict[tuple[str, str], tuple[NameKind, ...]] = {
 """The kinds of names that a value may refer to, by element and attribute."""
 _JOINT_USERS = frozenset({"transmission", "ros2_control", "group", "group_state"})
 """Elements in which ``<joint>`` and ``<link>`` use a name instead of defining it."""
-_LINK_TAG = lazy_pattern(r"(?i)(frame|link|body|bumper)(_?(id|name))?s?$")
-_JOINT_TAG = lazy_pattern(r"(?i)joint(_?names?)?s?(_\d+)?$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +86,9 @@ def kinds_of_text(tag: str) -> tuple[NameKind, ...]:
 
     The kinds follow from the tag, as in the parameters ``<left_joint>`` and ``<robot_base_frame>`` of plugins.
     """
-    if _JOINT_TAG.search(tag):
+    if JOINT_TAG.search(tag):
         return _JOINT
-    return _LINK if _LINK_TAG.search(tag) else ()
+    return _LINK if LINK_TAG.search(tag) else ()
 
 
 def occurrences_in(text: str, file: Path) -> Iterator[Occurrence]:

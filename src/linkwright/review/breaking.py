@@ -65,6 +65,11 @@ def name_reason(name: str) -> Phrase:
     return phrase("programs that use the name '{name}' do not find it", name=name)
 
 
+def possible_name_reason(name: str) -> Phrase:
+    """Return why it may be breaking that a name is gone which the node offers or only uses."""
+    return phrase("if the node publishes or serves '{name}', programs that use it do not find it", name=name)
+
+
 def joint_name_reason(name: str) -> Phrase:
     """Return why it is breaking that a moving joint has gone."""
     return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.word_changes import words_text
 
 EMPTY = "''"
 """An empty value as users write it."""
@@ -24,6 +25,9 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
         old: the old value; a list is written as ``[a, b]``.
         new: the new value.
     """
+    words = words_text(old, new) if max(len(old), len(new)) > _LONG_VALUE else None
+    if words is not None:
+        return phrase("{parameter}: {changes}", parameter=name, changes=words)
     old_items, new_items = _nested_items(old), _nested_items(new)
     are_lists = all(value.startswith("[") and items != [value] for value, items in ((old, old_items), (new, new_items)))
     are_names = are_lists and all(len(item) <= _LONG_NAME for item in (*old_items, *new_items))

@@ -1,4 +1,4 @@
-"""The changed files that a review does not compare: what happened to them, and what they are."""
+"""The changed files that a review does not compare: what happened to them, what they are, and changed lines."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changed_lines import changed_lines
 from linkwright.review.renamed_packages import moved_files
 from linkwright.review.versions import Version, Versions
 
@@ -29,7 +30,7 @@ def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, P
         version, path = (versions.new, file.new_path) if file.new_path else (versions.old, file.old_path)
         kind = None if path is None or file.is_submodule else _kind(version, path)
         if state is None:
-            state = kind
+            state = kind or changed_lines(versions, file)
         elif kind is not None:
             state = phrase("{state}, {kind}", state=state, kind=kind)
         if state is not None:

@@ -53,6 +53,7 @@ from linkwright.review.kinds import (
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.lost_controllers import lost_controllers
+from linkwright.review.lost_data import lost_data
 from linkwright.review.lost_files import lost_files
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.other_files import file_states
@@ -186,6 +187,7 @@ class _Reviewer:
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         result = _with_changes(result, broken_callers(self._versions, self._changed_files))
         result = _with_changes(result, lost_controllers(self._versions, self._changed_files))
+        result = _with_changes(result, lost_data(self._versions, self._changed_files))
         return sorted(result, key=lambda subject: subject.path)
 
     def _removed_submodules(self) -> Iterator[Subject]:

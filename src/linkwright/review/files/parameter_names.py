@@ -62,9 +62,14 @@ class NameRules:
         old, new = old_value.text, new_value.text
         if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
             return phrase("the message type of a topic changes between one with and one without a header")
-        controller = _CONTROLLER_TYPE.fullmatch(parameter)
+        controller = _typed_controller(parameter, old, new)
         if controller is not None:
-            return phrase("the controller '{name}' offers other topics and actions", name=controller["controller"])
+            return phrase(
+                "the controller '{name}' has the type '{new}' instead of '{old}', with other topics and interfaces",
+                name=controller,
+                old=old,
+                new=new,
+            )
         gone = _items(old) - _items(new)
         gone -= {name for name in gone if any(may_be(each, name) for each in _items(new))}
         if _TRANSFORMS.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
@@ -163,6 +168,16 @@ def _ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
         is_controller = "controller" in f"{part} {text}".lower() and "[" not in part
         if key == "type" and part and is_controller and _CLASS.fullmatch(text) and not _NODE.match(name):
             yield part
+
+
+def _typed_controller(parameter: str, old: str, new: str) -> str | None:
+    """Return the name of the controller whose type a parameter sets, or None for another parameter."""
+    match = _CONTROLLER_TYPE.fullmatch(parameter) or _OWN_TYPE.fullmatch(parameter)
+    if match is not None:
+        is_class = match.re is _CONTROLLER_TYPE or (_CLASS.fullmatch(old) and _CLASS.fullmatch(new))
+        return match["controller"] if is_class else None
+    part = next(_ros1_controllers({parameter: old}), None)
+    return _slashed(part) if part is not None and _CLASS.fullmatch(new) else None
 
 
 def _slashed(part: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Hashable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
@@ -136,4 +136,9 @@ def _summary(name: str, group: Sequence[ValueChange]) -> Change:
         counted("{count} part removed", "{count} parts removed", counts[2]),
     )
     listed = joined([text for text, count in zip(texts, counts, strict=True) if count])
-    return Change(phrase("list {name}: {changes}", name=name, changes=listed), location=group[0].location)
+    items = [str(replace(change, name=change.name.removeprefix(name)).sentence) for change in group]
+    shown = joined(items[:MAX_NAMES], "; ")
+    if len(items) > MAX_NAMES:
+        shown = phrase("{names} and {count} more", names=shown, count=len(items) - MAX_NAMES)
+    text = phrase("list {name}: {changes}: {items}", name=name, changes=listed, items=shown)
+    return Change(text, location=group[0].location)

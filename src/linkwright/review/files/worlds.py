@@ -24,6 +24,7 @@ from linkwright.review.files.sdf_numbers import (
     without_same_values,
 )
 from linkwright.review.files.templates import is_same_name_possible, is_template, template_elements
+from linkwright.review.left_names import left_names
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
 from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
@@ -69,8 +70,28 @@ def compare_worlds(pair: FilePair) -> None:
             Change(text, location=first.location(pair), other_names=tuple(parts[1:]), other_locations=locations)
         )
     _add_alone(pair, alone)
+    pair.changes += _left_names(pair, *elements)
     if differences and not is_template(pair.new_path):
         _add_scenes(pair, may_be_visible=any(map(_may_be_visible, differences)))
+
+
+def _left_names(pair: FilePair, old: Sequence[Element], new: Sequence[Element]) -> Iterator[Change]:
+    """Yield the plugins and sensors that name a link or joint that is gone.
+
+    A name may be in a model that only the new version includes.
+    """
+    old_links, old_joints, old_models = (_names(old, tag) for tag in ("link", "joint", "include"))
+    new_links, new_joints, new_models = (_names(new, tag) for tag in ("link", "joint", "include"))
+    if new_models <= old_models:
+        yield from left_names(new, old_links - new_links, old_joints - new_joints, pair.location)
+
+
+def _names(elements: Sequence[Element], tag: str) -> set[str]:
+    """Return the names of all elements with a tag, or the addresses of included models."""
+    found = (each for element in elements for each in element.walk() if each.tag == tag)
+    if tag == "include":
+        return {uri.text().strip() for each in found for uri in each.elements("uri")}
+    return {each.attributes["name"] for each in found if "name" in each.attributes}
 
 
 def _add_scenes(pair: FilePair, *, may_be_visible: bool) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from difflib import SequenceMatcher
 
 import yaml
@@ -15,6 +15,8 @@ _MAX_COMPARISONS = 1_000_000
 _MAX_SIMILARITIES = 2_500
 """The maximum product of the numbers of different items of two lists that are aligned by their contents."""
 _MIN_SIMILARITY = 0.4
+_MAX_DEPTH = 4
+"""The depth in an item up to which values are compared one by one."""
 
 
 def item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
@@ -50,21 +52,30 @@ def _matched_items(
     old_items, new_items = ([item for item in node.value if name_of_item(item) is None] for node in (old, new))
     if len(old_items) * len(new_items) > _MAX_COMPARISONS:
         return pairs
-    old_texts, new_texts = ([_text(item, texts) for item in items] for items in (old_items, new_items))
-    matcher = SequenceMatcher(None, old_texts, new_texts, autojunk=False)
-    for tag, old_start, old_end, new_start, new_end in matcher.get_opcodes():
-        labels |= {id(new_items[number]): str(number) for number in range(new_start, new_end)}
-        labels |= {id(old_items[number]): f"old {number}" for number in range(old_start, old_end)}
-        matched = (
-            zip(range(old_end - old_start), range(new_end - new_start), strict=True)
-            if tag == "equal"
-            else _similar_items(old_items[old_start:old_end], new_items[new_start:new_end])
-        )
-        for i, k in matched:
-            first, second = old_items[old_start + i], new_items[new_start + k]
-            labels[id(first)] = labels[id(second)]
-            pairs.append((first, second))
+    labels |= {id(item): str(number) for number, item in enumerate(new_items)}
+    labels |= {id(item): f"old {number}" for number, item in enumerate(old_items)}
+    for i, k in _aligned(old_items, new_items, texts):
+        labels[id(old_items[i])] = labels[id(new_items[k])]
+        pairs.append((old_items[i], new_items[k]))
     return pairs
+
+
+def _aligned(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, str]) -> Iterator[tuple[int, int]]:
+    """Yield the numbers of the items that belong together: the smallest edit, or for long lists a small one."""
+    old_texts, new_texts = ([_text(item, texts) for item in items] for items in (old, new))
+    anchors: list[tuple[int, int]] = []
+    if len(old) * len(new) <= _MAX_SIMILARITIES:
+        anchors = _best_pairs(list(map(_facts, old)), list(map(_facts, new)))
+    else:
+        matcher = SequenceMatcher(None, old_texts, new_texts, autojunk=False)
+        for start, new_start, size in matcher.get_matching_blocks():
+            anchors += [(start + number, new_start + number) for number in range(size)]
+    i, k = 0, 0
+    for next_i, next_k in [*anchors, (len(old), len(new))]:
+        yield from ((i + a, k + b) for a, b in _similar_items(old[i:next_i], new[k:next_k]))
+        if next_i < len(old):
+            yield next_i, next_k
+        i, k = next_i + 1, next_k + 1
 
 
 def _similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[tuple[int, int]]:
@@ -81,30 +92,46 @@ def _similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[t
         return in_order
     if len(old) == len(new) and not any(isinstance(item, yaml.MappingNode) for item in (*old, *new)):
         return in_order
-    best: dict[tuple[int, int], tuple[float, list[tuple[int, int]]]] = {}
-    for i in range(len(old) + 1):
-        for k in range(len(new) + 1):
-            if not i or not k:
-                best[i, k] = 0.0, []
-                continue
-            options = [best[i - 1, k], best[i, k - 1]]
-            similarity = _similarity(old_facts[i - 1], new_facts[k - 1])
-            if similarity >= _MIN_SIMILARITY:
-                total, pairs = best[i - 1, k - 1]
-                options.append((total + similarity, [*pairs, (i - 1, k - 1)]))
-            best[i, k] = max(options, key=lambda option: option[0])
-    return best[len(old), len(new)][1]
+    return _best_pairs(old_facts, new_facts)
+
+
+def _best_pairs(old: Sequence[Counter[str]], new: Sequence[Counter[str]]) -> list[tuple[int, int]]:
+    """Return the numbers of the items that are similar, in the order of both lists, with the most in common."""
+    best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
+    scores = [[_similarity(a, b) for b in new] for a in old]
+    for i, row in enumerate(scores, 1):
+        for k, similarity in enumerate(row, 1):
+            together = best[i - 1][k - 1] + similarity if similarity >= _MIN_SIMILARITY else 0.0
+            best[i][k] = max(best[i - 1][k], best[i][k - 1], together)
+    pairs = []
+    i, k = len(old), len(new)
+    while i and k:
+        if best[i][k] == best[i - 1][k]:
+            i -= 1
+        elif best[i][k] == best[i][k - 1]:
+            k -= 1
+        else:
+            i, k = i - 1, k - 1
+            pairs.append((i, k))
+    return pairs[::-1]
 
 
 def _facts(node: yaml.Node) -> Counter[str]:
-    """Return the keys of an item, and its keys with their values."""
+    """Return the paths of the values in an item, each with its value."""
+    return Counter(_leaves(node, "", 0))
+
+
+def _leaves(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
+    children: list[tuple[str, yaml.Node]] = []
     if isinstance(node, yaml.MappingNode):
-        values = [(str(key.value), _text(value, {})) for key, value in node.value]
+        children = [(str(key.value), value) for key, value in node.value]
     elif isinstance(node, yaml.SequenceNode):
-        values = [(str(number), _text(value, {})) for number, value in enumerate(node.value)]
-    else:
-        values = [("", _text(node, {}))]
-    return Counter(f"{key}={value}" for key, value in values)
+        children = [(str(number), value) for number, value in enumerate(node.value)]
+    if not children or depth >= _MAX_DEPTH:
+        yield f"{path}={_text(node, {})}"
+        return
+    for key, value in children:
+        yield from _leaves(value, f"{path}.{key}", depth + 1)
 
 
 def _similarity(old: Counter[str], new: Counter[str]) -> float:

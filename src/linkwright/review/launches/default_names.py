@@ -23,7 +23,7 @@ def default_name(root: Path, program: str) -> str | None:
         program: the package and the executable or the class of a component, such as ``arm/arm::Driver``.
     """
     package, _, name = program.partition("/")
-    folder = _packages(root).get(package)
+    folder = package_folders(root).get(package)
     if folder is None or not name:
         return None
     files = _sources_of_class(folder, name.rpartition("::")[2]) if "::" in name else _modules(folder, name)
@@ -40,7 +40,7 @@ def script_of(root: Path, program: str) -> Path | None:
         program: the package and the executable, such as ``arm/driver.py``.
     """
     package, _, name = program.partition("/")
-    folder = _packages(root).get(package)
+    folder = package_folders(root).get(package)
     if folder is None or not name or "/" in name or "$" in name or "*" in name:
         return None
     modules = _modules(folder, name)
@@ -50,7 +50,8 @@ def script_of(root: Path, program: str) -> Path | None:
 
 
 @lru_cache(maxsize=4)
-def _packages(root: Path) -> dict[str | None, Path]:
+def package_folders(root: Path) -> dict[str | None, Path]:
+    """Return the folders of the packages of a repository, by name."""
     return {package_name(folder): folder for folder in find_targets([root]).packages}
 
 

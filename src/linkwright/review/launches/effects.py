@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.breaking import name_reason
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.breaking import name_reason, possible_name_reason
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import offers_frame, type_reason
 from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
 from linkwright.review.launches.conditions import condition_holds
-from linkwright.review.launches.matching import name_likeness
+from linkwright.review.launches.matching import loaded_class, name_likeness
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -23,7 +24,9 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
+from linkwright.review.launches.sides import Side, side_of
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names, title
+from linkwright.review.launches.topic_tools import forwarding_reason
 from linkwright.review.list_changes import list_items
 
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
@@ -34,6 +37,8 @@ _SPAWNING = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
 """Programs that tell another program once to create a robot, and offer nothing themselves."""
+_SPAWNING_FILE = re.compile(r"spawn|create")
+"""The names of included files and commands that create robots."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
 _NAME = re.compile(r"[~/\w]+")
 _NAMES_OF_NODES = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
@@ -65,15 +70,8 @@ _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
-_SUBSCRIBERS = re.compile(
-    r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
-    r"robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
-)
-_INPUTS = re.compile(
-    r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
-    r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
-)
-"""The topics to which those programs subscribe. They publish others."""
+_Use = tuple[Entry, str, Phrase]
+"""An action, its setting that uses an argument, and why a new default of the argument is breaking for it."""
 _ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
@@ -97,6 +95,8 @@ def removal_reason(
         return None
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
+    if _spawns(entry):
+        return None if _spawns_as_much(outline, new) else phrase("the robot or model is not spawned any more")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
     if entry.kind == "include":
@@ -113,6 +113,19 @@ def removal_reason(
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
     return _served_reason(entry, names, new)
+
+
+def _spawns(entry: Entry) -> bool:
+    """Return whether a node tells a simulator once to create a robot or model."""
+    return entry.kind == "node" and _SPAWNING.fullmatch(entry.name) is not None and "remove" not in entry.name
+
+
+def _spawns_as_much(old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether a file creates as many robots as before, or includes another file that may do it."""
+    counts = [sum(map(_spawns, outline.entries)) for outline in (old, new)]
+    known = {entry.name for entry in old.entries}
+    may_include = any(_SPAWNING_FILE.search(entry.name) and entry.name not in known for entry in new.entries)
+    return counts[1] >= counts[0] or may_include
 
 
 def _publishes_states(outline: LaunchOutline) -> bool:
@@ -179,7 +192,7 @@ def setting_reason(
         return _remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return _renaming_reason(old, new, old_outline, new_outline)
-    if entry.kind in ("node", "include") and setting == CONDITION and not offers_nothing(entry):
+    if entry.kind in ("node", "include") and setting == CONDITION and (_spawns(entry) or not offers_nothing(entry)):
         held = condition_holds(old_outline.resolved(old or ""))
         does_not_hold = condition_holds(new_outline.resolved(new or "")) is False
         return phrase("by default, it does not start any more") if held and does_not_hold else None
@@ -187,16 +200,19 @@ def setting_reason(
         return None
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
-        is_input = _SUBSCRIBERS.match(entry.name) and _INPUTS.fullmatch(source.lstrip("/~"))
-        if is_input or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
+        side = side_of(loaded_class(entry) or entry.name, source, new_outline.root)
+        if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
         if old is not None and old_outline.resolved(old) in _targets(entry, new_outline):
             return None  # another topic of the node has the name now
-        return _remapping_reason(source, old, new, old_outline, new_outline)
+        return _remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
     if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
         return None
     if setting in _NAMES_OF_NODES:
         return _renaming_reason(old, new, old_outline, new_outline)
+    forwarding = forwarding_reason(entry, setting, old, new, (old_outline, new_outline))
+    if forwarding is not None:
+        return forwarding
     if setting == "arguments":
         old_names = _names_in(entry, old, old_outline)
         new_names = _names_in(entry, new, new_outline)
@@ -269,15 +285,25 @@ def _default_reason(
             return phrase("callers that pass the path of a file instead of its name fail")
     if old_value.lower() in _TRUTH and re.fullmatch(r"[a-z]\w*", new_value.lower()) and new_value.lower() not in _TRUTH:
         return phrase("callers that pass '{value}' fail", value=old_value)
-    reasons = _reasons_of_uses(argument.name, old_outline, new_outline)
-    reason = next((reason for reason in reasons if reason is not None), None)
+    uses = list(_reasons_of_uses(argument.name, old_outline, new_outline))
+    stopped = list(dict.fromkeys(title(entry) for entry, setting, _ in _importance(uses) if setting == CONDITION))
+    if len(stopped) > 1:
+        return phrase("by default, {entries} do not start any more", entries=joined_first(stopped, MAX_NAMES))
+    if stopped:
+        return phrase("by default, {entry} does not start any more", entry=stopped[0])
+    reason = next((reason for _, _, reason in uses), None)
     if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
         return name_reason(old_value)
     return reason
 
 
-def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[Phrase | None]:
-    """Yield why the new default of an argument is breaking for the actions that use it."""
+def _importance(uses: list[_Use]) -> list[_Use]:
+    """Return uses of an argument with those of static transforms last."""
+    return sorted(uses, key=lambda use: use[0].name.startswith(TRANSFORM_PUBLISHERS))
+
+
+def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[_Use]:
+    """Yield the settings of actions that use an argument and for which its new default is breaking."""
     variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in new_outline.entries:
         if entry.kind == "argument":
@@ -285,9 +311,8 @@ def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchO
         for setting, value in entry.settings.items():
             if variable.search(value):
                 reason = setting_reason(entry, setting, value, value, old_outline, new_outline)
-                if reason is not None and setting == CONDITION:
-                    reason = phrase("by default, {entry} does not start any more", entry=title(entry))
-                yield reason
+                if reason is not None:
+                    yield entry, setting, reason
 
 
 def _condition(entry: Entry, outline: LaunchOutline) -> str:
@@ -353,16 +378,31 @@ def _resolved_name(text: str | None, outline: LaunchOutline) -> str:
 
 
 def _remapping_reason(
-    source: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+    source: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
+    *,
+    is_known: bool = False,
 ) -> Phrase | None:
-    """Return why it is breaking that a name is remapped otherwise, or None if the name is the same."""
+    """Return why it is breaking that a name is remapped otherwise, or None if the name is the same.
+
+    Args:
+        source: the name in the node.
+        old: the old name outside of it; None if it was the same.
+        new: the new name outside of it; None if it is the same.
+        old_outline: the old file.
+        new_outline: the new file.
+        is_known: whether the node is known to publish or serve the name, and not only to use it.
+    """
     old_name = old_outline.resolved(source if old is None else old)
     new_name = new_outline.resolved(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
     if _CODE.search(new_name) or _has_new_variable(old_name, new_name):
         return None  # the name may be the same
-    return name_reason(old_name)
+    return name_reason(old_name) if is_known else possible_name_reason(old_name)
 
 
 def _has_new_variable(old: str, new: str) -> bool:

@@ -34,10 +34,11 @@ class FileChoices:
     def compare(self, old: Entry, new: Entry) -> None:
         """Add the files of an action that depend on other arguments."""
         old_files, new_files = set(_files(old, self._old)), set(_files(new, self._new))
-        for before in sorted(old_files - new_files):
-            for after in sorted(new_files - old_files):
+        gone, come = old_files - new_files, new_files - old_files
+        for before in sorted(gone):
+            for after in sorted(come):
                 is_same = self._old.resolved(before) == self._new.resolved(after)
-                is_lone = not _names(before) and len(old_files - new_files) == 1
+                is_lone = len(gone) == 1 and (not _names(before) or len(come) == 1)
                 if is_same or is_lone or _last_part(before) == _last_part(after):
                     self._compare_files(before, after, new)
 
@@ -51,7 +52,14 @@ class FileChoices:
             is_used = (is_known and old_file != new_file) or any(map(self._is_passed, lost))
             reason = phrase("the value that a caller passes for {names} chooses another file", names=names)
             text = phrase("{names} does not choose the file '{file}' any more", names=names, file=after)
+            if is_known and old_file != new_file:
+                text = phrase(
+                    "{change}; by default, it is '{new}' instead of '{old}'", change=text, old=old_file, new=new_file
+                )
             self._add(text, entry, reason if is_used else None)
+        elif _names(before) and _names(after) and is_known and old_file != new_file:
+            text = phrase("by default, the file is '{new}' instead of '{old}'", old=old_file, new=new_file)
+            self._add(text, entry, None)
         elif not _names(before) and _names(after):
             names = quoted_names(sorted(_names(after)))
             text = phrase("the file '{file}' depends on {names} now", file=after, names=names)

@@ -11,7 +11,7 @@ from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.breaking import name_reason
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.effects import addition_reason, removal_reason, value_reason
+from linkwright.review.launches.effects import addition_reason, removal_reason
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.included import IncludedActions, callers_of, file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
@@ -21,13 +21,14 @@ from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renames import renamed_entry, renamed_names, with_new_names
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import added_entry, joined_titles, removed_entry, title
+from linkwright.review.launches.transforms import other_publisher
+from linkwright.review.launches.unused_arguments import add_unused_arguments
 from linkwright.review.list_changes import excerpts, shortened
 
 _MAX_SOURCE = 120
 """The number of characters of a statement that are shown."""
 _MAX_STATEMENTS = 3
 """The maximum number of changed statements that are each shown."""
-_WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
 _VARIABLE = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
 """The names of variables and parameters in the texts of statements."""
 
@@ -52,10 +53,12 @@ def compare_launch_files(pair: FilePair) -> None:
     settings.add_renamed()
     gone: list[Entry] = []
     come: list[Entry] = []
+    kept: list[Entry] = []
     for old_entry, new_entry in matched_entries(old.entries, new.entries):
         if old_entry is not None and new_entry is not None:
             settings.compare(old_entry, new_entry)
             choices.compare(old_entry, new_entry)
+            kept.append(old_entry)
         elif old_entry is not None:
             gone.append(old_entry)
         elif new_entry is not None:
@@ -81,7 +84,7 @@ def compare_launch_files(pair: FilePair) -> None:
         text = phrase("{entry} uses argument '{name}', which is not declared", entry=title(entry), name=name)
         reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
         pair.add(text, pair.location(entry.span), reason)
-    _add_unused_arguments(pair, old, new)
+    add_unused_arguments(pair, old, new, [*kept, *(entry for entry, _ in replaced)])
     if gone or come:
         _add_lone_entries(pair, gone, come, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
@@ -133,6 +136,12 @@ def _add_lone_entries(
         file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=title(written), file=file)
+        publisher = other_publisher(entry, old_included.outline, new_included.outline, pair.versions.new)
+        if publisher is not None:
+            pair.add(
+                phrase("{change}; {entry} may publish its transform", change=text, entry=title(publisher)), location
+            )
+            continue
         stops_nodes = entry.kind == "include" and bool(old_included.started(entry) & stopped)
         pair.add(
             text, location, removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes)
@@ -161,22 +170,6 @@ def _is_declared_by_caller(pair: FilePair, name: str) -> bool:
         name in include.settings or (not outline.is_ros1 and name in outline.values)
         for outline, include in callers_of(pair.versions.new, pair.new_path, name)
     )
-
-
-def _add_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
-    """Add the arguments that the old version uses without declaring them, and that the new one does not name."""
-    used = {name: entry for entry in old.entries for name in _names_with_default(entry)}
-    declared = {entry.name for outline in (old, new) for entry in outline.entries if entry.has_value}
-    text = pair.new_file.read_text("utf-8", errors="replace") if used.keys() - declared else ""
-    for name, entry in used.items():
-        if name not in declared and not re.search(rf"\b{re.escape(name)}\b", text):
-            location = pair.location(entry.span, is_old=True)
-            pair.add(phrase("argument '{name}' removed", name=name), location, value_reason(name, is_ros1=old.is_ros1))
-
-
-def _names_with_default(entry: Entry) -> list[str]:
-    texts = (entry.name, *entry.settings.values())
-    return [name for text in texts for name in _WITH_DEFAULT.findall(text)]
 
 
 def _keeps_name(entry: Entry) -> bool:

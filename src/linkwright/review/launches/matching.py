@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
-from linkwright.review.launches.outlines import SERVER_PARAMETER, Entry
+from linkwright.review.launches.outlines import CONDITION, NAMESPACE_OF_INCLUDED, SERVER_PARAMETER, Entry
 from linkwright.review.launches.titles import served_names
 
 MIN_SIMILARITY = 0.5
@@ -15,6 +15,12 @@ _MIN_SIMILARITY_OF_PROGRAMS = 0.75
 _MIN_SIMILARITY_OF_FILES = 0.6
 _SEPARATORS = re.compile(r"[\W_]+|node")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
+_PACKAGE = re.compile(r"\$\(find(?:-pkg-share)? [^()]+\)/")
+_PLACE = frozenset({CONDITION, NAMESPACE_OF_INCLUDED})
+"""The settings of an include that are not arguments that it passes."""
+_MIN_PASSED = 2
+_MIN_SHARE_OF_PASSED = 0.5
+"""The number and the share of passed arguments that an include keeps if another file replaces the included one."""
 _NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for the version that does not have it."""
@@ -61,7 +67,7 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
         is_same = is_same or (old.kind == "parameters" and _chooses_file(old.name, new.name))
         likeness = SequenceMatcher(None, launch_file_key(old.name), launch_file_key(new.name), autojunk=False).ratio()
         if likeness < _MIN_SIMILARITY_OF_FILES and not is_same:
-            return 0.0
+            return similarity * _is_other_file_of_package(old, new)
         is_like = bool(old.settings) and old.settings == new.settings
         is_beside = old.kind == "include" and PurePosixPath(old.name).parent == PurePosixPath(new.name).parent
         return 1.0 + similarity if is_same else likeness * (is_like or is_beside)
@@ -78,6 +84,17 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
     is_renamed = all(a == b or name_likeness(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in others)
     is_like = likeness >= _MIN_SIMILARITY_OF_PROGRAMS and (similarity >= MIN_SIMILARITY or likeness == 1.0)
     return likeness + similarity if is_like and is_renamed else 0.0
+
+
+def _is_other_file_of_package(old: Entry, new: Entry) -> bool:
+    """Return whether an include passes most of the arguments of another one to another file of the same package."""
+    packages = {match[0] if (match := _PACKAGE.match(entry.name)) else "" for entry in (old, new)}
+    common = old.settings.items() & new.settings.items()
+    common = {(name, value) for name, value in common if name not in _PLACE}
+    count = len(old.settings.keys() - _PLACE)
+    is_same_place = all(old.settings.get(name) == new.settings.get(name) for name in _PLACE)
+    is_mostly_same = len(common) >= max(_MIN_PASSED, count * _MIN_SHARE_OF_PASSED)
+    return old.kind == "include" and len(packages) == 1 and "" not in packages and is_same_place and is_mostly_same
 
 
 def _parameter_score(old: Entry, new: Entry) -> float:
@@ -130,10 +147,15 @@ def _by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
     return groups
 
 
+def loaded_class(entry: Entry) -> str | None:
+    """Return the class that a nodelet loads, or None for another action."""
+    match = _NODELET.match(entry.settings.get("arguments", "")) if entry.name == "nodelet/nodelet" else None
+    return None if match is None else match[1]
+
+
 def _load_other_classes(old: Entry, new: Entry) -> bool:
     """Return whether two nodelets are of different classes."""
-    nodelets = [_NODELET.match(entry.settings.get("arguments", "")) for entry in (old, new)]
-    classes = {match[1] for match in nodelets if match is not None}
+    classes = {loaded for entry in (old, new) if (loaded := loaded_class(entry)) is not None}
     return old.name == new.name == "nodelet/nodelet" and len(classes) > 1
 
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 
 from linkwright.diagnostics import Span
 from linkwright.review.launches.conditions import condition_holds
@@ -111,12 +112,14 @@ class LaunchOutline:
         code: the rest of the file.
         definitions: the statements that give a value to a name, which is compared where it is used.
         is_ros1: whether the file is one of ROS 1.
+        root: the folder of the repository; None if it is unknown.
     """
 
     entries: list[Entry]
     code: list[CodePart]
     definitions: list[CodePart] = field(default_factory=list)
     is_ros1: bool = False
+    root: Path | None = None
 
     def resolved(self, text: str) -> str:
         """Return a text with the defaults of arguments and environment variables in place of ``$(var NAME)``."""

@@ -29,7 +29,7 @@ def read_outline(path: Path, root: Path) -> LaunchOutline:
         OSError: the file cannot be read.
         ValueError: the file is not text in UTF-8.
     """
-    return with_joined_namespaces(_read(path, root))
+    return replace(with_joined_namespaces(_read(path, root)), root=root)
 
 
 def _read(path: Path, root: Path) -> LaunchOutline:

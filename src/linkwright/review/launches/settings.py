@@ -6,7 +6,7 @@ from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
-from linkwright.review.breaking import name_reason
+from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import changed_settings
@@ -206,8 +206,10 @@ class SettingChanges:
 
 
 def _stopped_reason(programs: Collection[Program]) -> Phrase:
-    names = quoted_names(sorted({name for _, name in programs})[:MAX_NAMES])
-    return phrase("by default, {names} does not start any more", names=names)
+    names = [quoted_names([name]) for name in sorted({name for _, name in programs})]
+    if len(names) == 1:
+        return phrase("by default, {entry} does not start any more", entry=names[0])
+    return phrase("by default, {entries} do not start any more", entries=joined_first(names, MAX_NAMES))
 
 
 def _joined_settings(
@@ -263,8 +265,10 @@ def _item(setting: _Setting) -> str:
 
 def _group_reason(group: Sequence[_Setting]) -> Phrase | None:
     reasons = [setting.reason for setting in group if setting.reason is not None]
-    names = [str(reason.arguments["name"]) for reason in reasons if reason.arguments.keys() == {"name"}]
-    if len(names) == len(reasons) > 1:
-        names = list(dict.fromkeys(names))
-        return name_reason(", ".join([*names[:MAX_NAMES], *["..."][: len(names) > MAX_NAMES]]))
-    return reasons[0] if reasons else None
+    if len(reasons) < 2 or any(reason.arguments.keys() != {"name"} for reason in reasons):
+        return reasons[0] if reasons else None
+    certain = [reason for reason in reasons if reason.template == name_reason("").template]
+    names = list(dict.fromkeys(str(reason.arguments["name"]) for reason in certain or reasons))
+    text = ", ".join([*names[:MAX_NAMES], *["..."][: len(names) > MAX_NAMES]])
+    is_possible = all(reason.template == possible_name_reason("").template for reason in reasons)
+    return possible_name_reason(text) if is_possible else name_reason(text)

@@ -271,6 +271,8 @@ class ExpressionTexts:
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
+            if function != "join" and isinstance(self._python.resolved(first), ast.Call):
+                return None  # it fails: only a list can be joined
             pieces = arguments if function == "join" else self._pieces(first)
             return _joined_path(["".join(map(part, self._pieces(piece))) for piece in pieces])
         if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):

@@ -22,6 +22,7 @@ from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.merging import common_reason, merged
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
+from linkwright.review.left_names import left_names
 from linkwright.review.plugins import added_topics, contents_text, is_still_offered, missing_topics_reason
 from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
@@ -145,6 +146,9 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
             is_placed = partial is None or not partial.has_stand_ins
             text = _with_motion(text, frames.distance(difference.old or "") if is_placed else None)
         yield Change(text, effect, reason, _mesh_location(pair, case, difference) or _location(pair, difference))
+    if partial is None:
+        links, joints = old.links.keys() - new.links.keys(), old.joints.keys() - new.joints.keys()
+        yield from left_names(new.extensions, links, joints, pair.location)
 
 
 def _root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:

@@ -1,0 +1,74 @@
+"""The changed lines of scripts, device rules, container files and lists of packages."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable
+from difflib import SequenceMatcher
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import MAX_NAMES
+from linkwright.review.list_changes import excerpts, shortened
+from linkwright.review.versions import Versions
+
+_SUFFIXES = frozenset({".sh", ".bash", ".zsh", ".rules", ".service", ".dockerfile"})
+_NAMES = re.compile(r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env")
+_PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
+"""A line of a list of packages."""
+_MAX_LINES = 6
+"""The number of changed lines up to which they are shown, except in a list of packages."""
+_MAX_LENGTH = 160
+_MAX_BYTES = 1 << 18
+_MIN_SIMILARITY = 0.5
+
+
+def changed_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
+    """Return the lines that a text file has gained and lost, or None for a file of another kind.
+
+    Comments and empty lines are left out. Many lines are only counted.
+    """
+    if file.old_path is None or file.new_path is None or file.is_submodule or not _has_lines(file.path):
+        return None
+    texts = versions.old.file(file.old_path), versions.new.file(file.new_path)
+    try:
+        if any(text.stat().st_size > _MAX_BYTES for text in texts):
+            return None
+        old, new = ([*_lines(text.read_text("utf-8"))] for text in texts)
+    except (OSError, ValueError):
+        return None
+    gone, come = (list((Counter(a) - Counter(b)).elements()) for a, b in ((old, new), (new, old)))
+    if not gone and not come:
+        return None
+    if all(map(_PACKAGE.fullmatch, (*gone, *come))):
+        return _parts(joined_first(come, MAX_NAMES), joined_first(gone, MAX_NAMES))
+    is_one = len(gone) == len(come) == 1
+    if is_one and SequenceMatcher(None, gone[0], come[0], autojunk=False).ratio() >= _MIN_SIMILARITY:
+        before, after = excerpts(gone[0], come[0])
+        return phrase("{old} -> {new}", old=before, new=after)
+    if len(gone) + len(come) <= _MAX_LINES:
+        return _parts(*(joined([f"`{shortened(line, _MAX_LENGTH)}`" for line in lines]) for lines in (come, gone)))
+    counts = (counted("{count} line", "{count} lines", len(lines)) if lines else "" for lines in (come, gone))
+    return _parts(*counts)
+
+
+def _parts(added: Phrase | str, removed: Phrase | str) -> Phrase:
+    parts = [phrase("{items} added", items=added)] if added else []
+    if removed:
+        parts.append(phrase("{items} removed", items=removed))
+    return joined(parts, "; ")
+
+
+def _has_lines(path: str) -> bool:
+    name = PurePosixPath(path).name.lower()
+    return PurePosixPath(name).suffix in _SUFFIXES or _NAMES.fullmatch(name) is not None
+
+
+def _lines(text: str) -> Iterable[str]:
+    """Yield the lines of a text without comments, with continued lines as one."""
+    for line in re.sub(r"\\\n\s*", "", text).splitlines():
+        words = " ".join(line.split())
+        if words and not words.startswith("#"):
+            yield words

@@ -1,0 +1,70 @@
+"""Which side of a name a node is on: whether it offers a topic or service, or only uses it."""
+
+from __future__ import annotations
+
+import re
+from enum import Enum
+from functools import lru_cache
+from pathlib import Path
+
+from linkwright.review.launches.default_names import package_folders
+from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
+from linkwright.review.sources.reading import read_source_names
+
+_SUBSCRIBERS = re.compile(
+    r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
+    r"robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
+)
+_INPUTS = re.compile(
+    r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
+    r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
+)
+"""The topics to which those programs subscribe. They publish others."""
+_NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
+_NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
+_OFFERING = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
+_USING = frozenset({NameKind.SUBSCRIPTION, NameKind.CLIENT, NameKind.ACTION_CLIENT})
+_MAX_SOURCES = 80
+
+
+class Side(Enum):
+    """Whether a node offers a name to others."""
+
+    OFFERS = "offers"
+    USES = "uses"
+    UNKNOWN = "unknown"
+
+
+def side_of(program: str, name: str, root: Path | None) -> Side:
+    """Return whether a node offers a topic or service, or uses it, as its sources or the name tell.
+
+    Args:
+        program: the package and the executable of the node.
+        name: the name that the node itself gives to the topic or service.
+        root: the folder of the repository, which may have the sources; None if it is unknown.
+    """
+    plain = name.lstrip("~/")
+    if _SUBSCRIBERS.match(program) and _INPUTS.fullmatch(plain):
+        return Side.USES
+    kinds = set() if root is None else _kinds(root, program.partition("/")[0]).get(plain, set())
+    if kinds and kinds <= _USING:
+        return Side.USES
+    if kinds & _OFFERING or _NAMED_OUTPUT.fullmatch(plain):
+        return Side.OFFERS
+    return Side.USES if _NAMED_INPUT.fullmatch(plain) else Side.UNKNOWN
+
+
+@lru_cache(maxsize=64)
+def _kinds(root: Path, package: str) -> dict[str, set[NameKind]]:
+    """Return the kinds of the names of topics, services and actions in the sources of a package."""
+    kinds: dict[str, set[NameKind]] = {}
+    folder = package_folders(root).get(package)
+    if folder is None:
+        return kinds
+    suffixes = (*CPP_SUFFIXES, PYTHON_SUFFIX)
+    files = [file for file in sorted(folder.rglob("*")) if file.suffix in suffixes and file.is_file()]
+    for file in files[:_MAX_SOURCES]:
+        for item in read_source_names(file).names:
+            if item.kind in _OFFERING | _USING:
+                kinds.setdefault(item.name.strip("\"'").lstrip("~/"), set()).add(item.kind)
+    return kinds

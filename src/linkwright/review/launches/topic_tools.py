@@ -1,0 +1,86 @@
+"""The topics that the programs of topic_tools forward, as their arguments name them."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import name_reason
+from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline
+from linkwright.review.list_changes import list_items
+
+_PACKAGE = "topic_tools/"
+_RATES = {"messages": 1, "bytes": 2}
+"""The numbers that follow the input of ``throttle``."""
+_NUMBERS = {"relay": 0, "delay": 1, "drop": 2, "relay_field": None, "transform": None}
+"""The numbers between the input and the output of other programs; None if there is always an output after the input."""
+_INPUT = f"{PARAMETER}input_topic"
+_Topics = tuple[list[str], list[str]]
+"""The inputs and the outputs."""
+
+
+def forwarding_reason(
+    entry: Entry, setting: str, old: str | None, new: str | None, outlines: tuple[LaunchOutline, LaunchOutline]
+) -> Phrase | None:
+    """Return why a changed setting of a program of topic_tools is breaking, or None if it is not.
+
+    Args:
+        entry: the new action.
+        setting: the name of the setting.
+        old: its old value; None if there was none.
+        new: its new value; None if there is none.
+        outlines: the old and the new file.
+    """
+    if not entry.name.startswith(_PACKAGE) or old is None or new is None:
+        return None
+    old_text, new_text = outlines[0].resolved(old), outlines[1].resolved(new)
+    if setting == _INPUT:
+        return None if _is_same(old_text, [new_text]) else _input_reason(old_text)
+    if setting != "arguments":
+        return None
+    (old_inputs, old_outputs), (new_inputs, new_outputs) = (_topics(entry, text) for text in (old_text, new_text))
+    if not old_inputs or not new_inputs:
+        return None
+    kept = [*new_outputs, *(name for other in outlines[1].entries for name in _outputs(other, outlines[1]))]
+    for name in old_outputs:
+        if not _is_same(name, kept):
+            return name_reason(name)
+    return next((_input_reason(name) for name in old_inputs if not _is_same(name, new_inputs)), None)
+
+
+def _input_reason(name: str) -> Phrase:
+    return phrase("the messages of '{name}' are not forwarded any more", name=name)
+
+
+def _is_same(name: str, names: list[str]) -> bool:
+    """Return whether a name is among others, or may be one whose parts are unknown."""
+    return any("$(" in other or other.strip("/") == name.strip("/") for other in names)
+
+
+def _outputs(entry: Entry, outline: LaunchOutline) -> list[str]:
+    return _topics(entry, outline.resolved(entry.settings.get("arguments", "")))[1]
+
+
+def _topics(entry: Entry, arguments: str) -> _Topics:
+    """Return the topics that the arguments of a program name; none if they are unknown."""
+    words = list_items(arguments) if arguments.startswith("[") else arguments.split()
+    words = words[: words.index("--ros-args")] if "--ros-args" in words else words
+    program = entry.name.removeprefix(_PACKAGE)
+    if not entry.name.startswith(_PACKAGE) or not words or "$(" in words[0] or words[0].startswith("["):
+        return [], []
+    if program == "mux":
+        return words[1:], words[:1]
+    if program == "demux":
+        return words[:1], words[1:]
+    numbers: int | None = 0
+    if program == "throttle":
+        kind, *words = words
+        if kind not in _RATES or not words:
+            return [], []
+        numbers = _RATES[kind]
+    elif program in _NUMBERS:
+        numbers = _NUMBERS[program]
+    else:
+        return [], []
+    if numbers is None:
+        return words[:1], words[1:2]
+    output = words[numbers + 1 : numbers + 2]
+    return words[:1], output or [f"{words[0].rstrip('/')}_{program}"]

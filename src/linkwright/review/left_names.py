@@ -1,0 +1,52 @@
+"""Plugins and sensors that still name a link or joint that the new version does not have any more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+
+from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.schema.name_tags import JOINT_TAG, LINK_TAG
+from linkwright.xmltree import Element
+
+_USERS = frozenset({"plugin", "sensor"})
+_SCOPE = "::"
+"""The separator of the names of models and links."""
+
+
+def left_names(
+    elements: Iterable[Element],
+    links: Collection[str],
+    joints: Collection[str],
+    location: Callable[[Span | None], Location | None],
+) -> Iterator[Change]:
+    """Yield the parameters of plugins and sensors that name lost links and joints, each as a breaking change.
+
+    Args:
+        elements: the elements of the new version.
+        links: the names of the links that only the old version has.
+        joints: the names of the joints that only the old version has.
+        location: a function that returns the location of a span.
+    """
+    if not links and not joints:
+        return
+    for user in (user for element in elements for user in element.walk() if user.tag in _USERS):
+        for element in user.walk():
+            name = element.text().strip().rpartition(_SCOPE)[2]
+            if LINK_TAG.search(element.tag) and name in links:
+                yield _change(user, element, phrase("the link '{name}' does not exist any more", name=name), location)
+            elif JOINT_TAG.search(element.tag) and name in joints:
+                yield _change(user, element, phrase("the joint '{name}' does not exist any more", name=name), location)
+
+
+def _change(
+    user: Element, element: Element, reason: Phrase, location: Callable[[Span | None], Location | None]
+) -> Change:
+    text = phrase(
+        "{kind} '{owner}' still names '{name}' in <{tag}>",
+        kind=user.tag,
+        owner=user.attributes.get("name", ""),
+        name=element.text().strip(),
+        tag=element.tag,
+    )
+    return Change(text, Effect.BREAKING, reason, location(element.span()))

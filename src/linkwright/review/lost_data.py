@@ -1,0 +1,67 @@
+"""Programs and parameter files of the new version that name a data file that only the old version has."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.versions import TEST_FOLDERS, Versions
+
+_READERS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".yaml", ".yml")
+_PROGRAMS = frozenset({*_READERS[:6], ".c", ".sh", ".bash"})
+"""The suffixes of files that a build file or an import names."""
+_COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
+_MIN_NAME = 5
+_MAX_FILES = 200
+
+
+def lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the files of the new version that name a removed or renamed data file, each with a change.
+
+    Launch files are left out: `lost_references` finds the paths in them.
+    """
+    lost = {
+        PurePosixPath(file.old_path).name: file.old_path
+        for file in changed_files[:_MAX_FILES]
+        if file.old_path and file.old_path != file.new_path and _is_data(file.old_path) and not file.is_submodule
+    }
+    if not lost:
+        return
+    kept = {PurePosixPath(path).name for path in versions.new.paths(tuple(lost))}
+    lost = {name: path for name, path in lost.items() if name not in kept}
+    changed = {file.old_path: file.new_path for file in changed_files}
+    for path in versions.new.paths(_READERS) if lost else ():
+        parts = PurePosixPath(path).parts
+        if not TEST_FOLDERS.isdisjoint(parts) or ".launch." in path or path.endswith("_launch.py"):
+            continue
+        text = versions.new.text(path)
+        for name, old_path in lost.items():
+            line = _line_of(text, name)
+            if line and versions.new.package_of(path) == versions.old.package_of(old_path):
+                yield path, _change(path, name, line, is_renamed=changed.get(old_path) is not None)
+
+
+def _is_data(path: str) -> bool:
+    pure_path = PurePosixPath(path)
+    is_named = len(pure_path.name) >= _MIN_NAME and pure_path.suffix not in ("", ".md", ".txt", ".xml")
+    return is_named and pure_path.suffix not in _PROGRAMS and TEST_FOLDERS.isdisjoint(pure_path.parts)
+
+
+def _line_of(text: str, name: str) -> int:
+    """Return the first line that names a file in quotes or at the end of a path; 0 if there is none."""
+    if name not in text:
+        return 0
+    pattern = re.compile(rf"(?<=[/\"']){re.escape(name)}(?=[\"'\s,\])]|$)", re.MULTILINE)
+    lines = (_COMMENT.sub("", line) for line in text.splitlines())
+    return next((number for number, line in enumerate(lines, 1) if pattern.search(line)), 0)
+
+
+def _change(path: str, name: str, line: int, *, is_renamed: bool) -> Change:
+    text = phrase("names the file '{name}', which was removed", name=name)
+    if is_renamed:
+        text = phrase("names the file '{name}', which has another name now", name=name)
+    return Change(text, Effect.BREAKING, phrase("the file '{name}' is not found", name=name), Location(path, line, 1))

@@ -1,0 +1,71 @@
+"""The changes of long texts that list words, such as command lines and the topics of a recording."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from difflib import SequenceMatcher
+
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
+
+_MIN_WORDS = 4
+_MAX_WORDS = 2000
+_MAX_WORD = 120
+"""The number of characters up to which a word is shown as a whole."""
+_MIN_COMMON = 0.5
+"""The share of words that both versions of a text have; others are compared as texts."""
+
+
+def words_text(old: str, new: str) -> Phrase | None:
+    """Return the replaced, added and removed words of a text, or None for texts that are not compared by words.
+
+    Args:
+        old: the old text.
+        new: the new text.
+    """
+    old_words, new_words = _words(old), _words(new)
+    if not (_are_comparable(old_words) and _are_comparable(new_words)):
+        return None
+    added, removed = Counter(new_words) - Counter(old_words), Counter(old_words) - Counter(new_words)
+    count = max(len(old_words), len(new_words))
+    if not (added or removed) or count - max(added.total(), removed.total()) < count * _MIN_COMMON:
+        return None
+    pairs = []
+    for kind, a, b, c, d in SequenceMatcher(None, old_words, new_words, autojunk=False).get_opcodes():
+        if kind == "replace" and b - a == d - c:
+            pairs += [(x, y) for x, y in zip(old_words[a:b], new_words[c:d], strict=True) if removed[x] and added[y]]
+    for old_word, new_word in pairs:
+        removed[old_word] -= 1
+        added[new_word] -= 1
+    texts = [phrase("{old} -> {new}", old=before, new=after) for before, after in dict.fromkeys(pairs)]
+    parts = [joined_first(texts, MAX_NAMES)] if texts else []
+    if added.total():
+        parts.append(phrase("{items} added", items=_joined(added, new_words)))
+    if removed.total():
+        parts.append(phrase("{items} removed", items=_joined(removed, old_words)))
+    return joined(parts, "; ")
+
+
+def _joined(counts: Counter[str], words: Iterable[str]) -> Phrase:
+    return joined_first([word for word in dict.fromkeys(words) if counts[word] > 0], MAX_NAMES)
+
+
+def _are_comparable(words: Sequence[str]) -> bool:
+    """Return whether a text lists words, most of which are not numbers, and no nested lists or sentences of code."""
+    named = [word for word in words if any(map(str.isalpha, word))]
+    is_short = all(len(word) <= _MAX_WORD for word in words)
+    return _MIN_WORDS <= len(words) <= _MAX_WORDS and is_short and 2 * len(named) > len(words)
+
+
+def _words(text: str) -> list[str]:
+    """Return the words of a text, each with its substitutions; none for a list in brackets."""
+    if text.startswith(("[", "{")):
+        return []
+    words, start, depth = [], 0, 0
+    for index, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if character.isspace() and depth <= 0:
+            words.append(text[start:index])
+            start = index + 1
+    return [word for word in [*words, text[start:]] if word]

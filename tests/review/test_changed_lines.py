@@ -1,0 +1,26 @@
+"""The changed lines of scripts, device rules and lists of packages in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "expected"),
+    [
+        ("apt/packages.txt", "git\ncurl\nros-jazzy-a\n", "git\nros-jazzy-a\nros-jazzy-b\n",
+         "ros-jazzy-b added; curl removed"),
+        ("udev/99.rules", 'A=="1"\n', '# sonar\nA=="1"\nKERNEL=="ttyUSB*", SYMLINK+="sonar"\n',
+         '`KERNEL=="ttyUSB*", SYMLINK+="sonar"` added'),
+        ("start.sh", "run a && run b\n", "run a\n# && run b\n", "run a && run b -> run a"),
+        ("Dockerfile", "FROM a\nRUN a \\\n  b\n", "FROM a\nRUN a b\n", None),
+        ("start.sh", "a b\n", "a b\n" + "".join(f"echo {n} x\n" for n in range(8)), "8 lines added"),
+        ("notes.md", "a\n", "b\n", None),
+    ],
+)  # fmt: skip
+def test_lines_that_a_text_file_gains_and_loses(repository, compare, path, old, new, expected):
+    repository.commit({path: old})
+    repository.write({path: new})
+    result = compare(repository)
+    assert result.other_files == [path]
+    assert {name: str(text) for name, text in result.file_states.items()} == ({path: expected} if expected else {})

@@ -1,0 +1,45 @@
+"""Remappings of names that a node offers, uses, or of which nothing is known, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import subject
+
+SOURCE = """import rospy
+rospy.init_node("n")
+rospy.Subscriber("scan", Scan, call)
+pub = rospy.Publisher("goal", Goal)
+plan = rospy.ServiceProxy("make_plan", Plan)
+"""
+CERTAIN = "programs that use the name '{}' do not find it"
+POSSIBLE = "if the node publishes or serves '{}', programs that use it do not find it"
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "reason"),
+    [
+        ("arm", "scan", None),
+        ("arm", "~make_plan", None),
+        ("arm", "goal", CERTAIN),
+        ("arm", "other", POSSIBLE),
+        ("elsewhere", "scan", POSSIBLE),
+        ("elsewhere", "cloud_in", None),
+        ("elsewhere", "cloud_out", CERTAIN),
+    ],
+)
+def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, package, name, reason):
+    remap = f'<remap from="{name}" to="/base/x"/>'
+    text = f'<launch><node pkg="{package}" type="n.py" name="n">{remap}</node></launch>'
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": SOURCE}
+    repository.commit({**files, "arm/launch/arm.launch": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch": text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
+
+
+def test_side_of_a_nodelet_is_that_of_its_class(changes_of):
+    node = '<node pkg="nodelet" type="nodelet" name="n" args="load depthimage_to_laserscan/Nodelet manager">'
+    text = f'<launch>{node}<remap from="image" to="depth/image_raw"/></node></launch>'
+    assert changes_of("arm.launch", text, "depth/image_raw", "other/image_raw")[1] == []

@@ -1,0 +1,45 @@
+"""Static transforms that other nodes of a launch file publish, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import subject
+
+STATIC = '<node pkg="tf" type="static_transform_publisher" name="still" args="0 0 0 0 0 0 /PARENT /CHILD 20"/>'
+FAKE = '<node pkg="fake_localization" type="fake_localization" name="fake"/>'
+LOADING = '<node pkg="arm" type="place.py" name="place"><rosparam command="load" file="$(find arm)/place.yaml"/></node>'
+INLINE = '<node pkg="arm" type="place.py" name="place"><param name="frames" value="hand, tool"/></node>'
+CAMERA = '<node pkg="camera" type="camera" name="camera"/>'
+
+
+@pytest.mark.parametrize(
+    ("parent", "child", "node", "publisher"),
+    [
+        ("map", "odom", FAKE, "fake_localization/fake_localization"),
+        ("base", "camera", FAKE, None),
+        ("hand", "tool", LOADING, "arm/place.py"),
+        ("hand", "tool", INLINE, "arm/place.py"),
+        ("hand", "finger", LOADING, None),
+        ("map", "odom", CAMERA, None),
+        ("map", "odom", "", None),
+    ],
+)
+def test_static_transform_that_an_added_node_may_publish_is_not_missing(
+    repository, compare, parent, child, node, publisher
+):
+    static = STATIC.replace("PARENT", parent).replace("CHILD", child)
+    files = {
+        "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+        "arm/place.yaml": "parent: hand\nchild: tool\n",
+    }
+    repository.commit({**files, "arm/launch/arm.launch": f"<launch>{static}</launch>"})
+    repository.write({"arm/launch/arm.launch": f"<launch>{node}</launch>"})
+    changes = subject(compare(repository), "arm/launch/arm.launch").changes
+    (removed,) = [change for change in changes if "'tf/static_transform_publisher'" in str(change.sentence)]
+    if publisher is None:
+        assert str(removed.reason) == f"the transform of the frame '/{child}' is missing"
+    else:
+        assert removed.reason is None
+        assert str(removed.sentence).endswith(f"; node '{publisher}' may publish its transform")

@@ -1,0 +1,34 @@
+"""Programs that still name a removed data file, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking
+
+FILES = {
+    "a/package.xml": PACKAGE_XML,
+    "a/grammar/words.bnf": "x ::= y\n",
+    "a/scripts/talk.py": 'path = folder + "/grammar/words.bnf"\n',
+    "a/config/talk.yaml": "talk:\n  grammar: grammar/words.bnf\n",
+}
+REMOVED = "names the file 'words.bnf', which was removed"
+RENAMED = "names the file 'words.bnf', which has another name now"
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"a/grammar/words.bnf": None}, [REMOVED, REMOVED]),
+        ({"a/grammar/words.bnf": None, "a/config/talk.yaml": None}, ["parameter file removed", REMOVED]),
+        ({"a/grammar/words.bnf": None, "a/data/words.bnf": "x ::= y\n"}, []),
+        ({"a/grammar/words.bnf": None, "a/grammar/text.bnf": "x ::= y\n"}, [RENAMED, RENAMED]),
+        ({"a/grammar/words.bnf": None, "a/scripts/talk.py": "# words.bnf\n", "a/config/talk.yaml": "talk: {}\n"}, []),
+    ],
+)  # fmt: skip
+def test_program_that_names_a_removed_data_file_is_breaking(repository, compare, changes, expected):
+    repository.commit(FILES)
+    repository.commit(changes)
+    found = breaking(compare(repository, "HEAD~1..HEAD"))
+    assert [item.partition(":")[0] for item in found] == expected
