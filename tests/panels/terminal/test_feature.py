@@ -319,9 +319,10 @@ async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
 
 
 async def test_split_utf8_character_arrives_complete(tmp_path: Path) -> None:
-    script = r"stty raw; printf '\346'; read -r a; printf '\234\272<'"
+    script = r"stty raw -echo; printf 'ready\346'; read -r a; printf '\234\272<'"  # an echo would separate the bytes
     async with enabled(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
+        await reader.until("ready")
         await reader.type("\n")
         await reader.until("机<")
 
