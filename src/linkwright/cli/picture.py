@@ -93,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 1
     print_diagnostics(scene.problems, sys.stderr)
     if not len(scene.mesh.faces):
-        message = phrase("'{file}' has nothing to draw: no visual of it can be drawn", file=arguments.file)
+        message = phrase("'{file}' has nothing to draw: none of its visuals can be drawn", file=arguments.file)
         raise LinkwrightError(Diagnostic("PIC110", message, hint=phrase("add a <visual> to a link")))
     style = _style(arguments, scene)
     if arguments.turntable is None:
@@ -134,7 +134,7 @@ def _read_world(arguments: argparse.Namespace, path: Path, finder: PackageFinder
     from linkwright.sdf.resources import ResourceFinder
 
     if arguments.joint:
-        message = phrase("'{file}' is a world, whose joints cannot be moved by --joint", file=arguments.file)
+        message = phrase("'{file}' is a world, but --joint moves only the joints of a robot", file=arguments.file)
         raise LinkwrightError(
             Diagnostic("PIC111", message, hint=phrase("pass a URDF or xacro file, or leave out --joint"))
         )

@@ -196,7 +196,7 @@ def _qos_hint(policy: QoSPolicyKind) -> Phrase:
             "make the publisher transient local, or the subscription volatile (in RViz: the display's "
             "Durability Policy)"
         )
-    return phrase("let the publisher offer more, or the subscription request less")
+    return phrase("let the publisher offer a stricter policy, or the subscription request a weaker one")
 
 
 def _policy_text(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:

@@ -220,7 +220,7 @@ class LinkwrightServer(LanguageServer):
         """
         current = self.positions(path)
         if current is None or current.text != positions.text:
-            message = localized(phrase("a text has changed in the meantime"))
+            message = localized(phrase("a file has changed in the meantime"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
     @property

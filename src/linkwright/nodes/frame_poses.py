@@ -42,7 +42,5 @@ class FramePoses:
         try:
             return self.buffer.lookup(target, source, 0)[0]
         except TransformException as error:
-            self._node.get_logger().warning(
-                f"{self._warning_prefix} {error}", throttle_duration_sec=_WARNING_PERIOD_SECONDS
-            )
+            self._node.get_logger().warning(f"{self._warning_prefix} {error}", throttle_duration_sec=_WARNING_PERIOD_SECONDS)
             return None

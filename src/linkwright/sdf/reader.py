@@ -34,7 +34,7 @@ _SEPARATE_NAMESPACE_TAGS = ("visual", "collision", "sensor", "light")
 _OTHER_FORMATS = {
     "robot": phrase("a URDF file"),
     "mujoco": phrase("a MuJoCo model"),
-    "gazebo:world": phrase("a world of a Gazebo version before 1.0"),
+    "gazebo:world": phrase("a world for Gazebo before version 1.0"),
     "COLLADA": phrase("a COLLADA mesh"),
     "launch": phrase("a launch file"),
 }

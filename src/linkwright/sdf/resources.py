@@ -424,7 +424,7 @@ def _find_in_other_case(path: Path) -> Path | None:
 
 def _missing_template_output(template: Path, path: Path) -> Missing:
     hint = phrase("the build creates it from '{name}'", name=template.name)
-    return Missing(phrase("there is no '{path}'", path=str(path)), hint, Severity.INFO)
+    return Missing(phrase("'{path}' does not exist", path=str(path)), hint, Severity.INFO)
 
 
 def _no_file(path: Path) -> Missing:
@@ -441,4 +441,4 @@ def _no_file(path: Path) -> Missing:
         hint = did_you_mean(path.name, names)
         if names and hint is None:
             hint = phrase("choose from {names}", names=joined(names[:8]))
-    return Missing(phrase("there is no '{path}'", path=str(path)), hint)
+    return Missing(phrase("'{path}' does not exist", path=str(path)), hint)

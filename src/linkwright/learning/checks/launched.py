@@ -158,9 +158,7 @@ class LaunchCheck:
         """
         names = self.nodes()
         if repeated := sorted(name for name in set(names) if names.count(name) > 1):
-            raise NotYet(
-                phrase("two nodes have the name '{name}'; each node needs a name of its own", name=repeated[0])
-            )
+            raise NotYet(phrase("two nodes have the name '{name}'; each node needs its own name", name=repeated[0]))
 
     def expect_node(self, name: str) -> None:
         """Require a node to run.

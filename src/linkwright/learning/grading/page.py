@@ -117,7 +117,7 @@ def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText])
         phrase("Passed"),
         phrase("Points"),
         phrase("Not yet"),
-        phrase("Hints and solution, as the student's file claims"),
+        phrase("Hints and solution, according to the student's file"),
         phrase("Time"),
     ]
     table = _table(headings, rows, numbers=(2, 5)) if rows else ""
@@ -143,7 +143,7 @@ def _protections(students: Sequence[StudentMarks]) -> str:
         f"<li>{'✓' if protection.value in in_force else '✗'} {_translated(text)}</li>"
         for protection, text in PROTECTIONS.items()
     )
-    return f"<h2>{_translated(phrase('Protections that were in force'))}</h2><ul>{items}</ul>"
+    return f"<h2>{_translated(phrase('Enforced protections'))}</h2><ul>{items}</ul>"
 
 
 def _points(student: StudentMarks) -> str:
