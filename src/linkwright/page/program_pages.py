@@ -88,7 +88,7 @@ class ProgramPages:
         return {PROGRAM_PAGES_VARIABLE: f"{origin}{PROGRAM_PAGES_PATH}{self._key}"}
 
     def is_key(self, key: str) -> bool:
-        """Return whether a key is that of the address in `variables`."""
+        """Return whether a key matches the address in `variables`."""
         return hmac.compare_digest(key.encode(errors="replace"), self._key.encode())
 
     async def receive(self, request: web.Request) -> web.StreamResponse:

@@ -21,7 +21,7 @@ from linkwright.rviz.frames.history import FrameHistory
 
 
 class PublishedTopics:
-    """The topics that the nodes of a graph publish, except those of the viewer's own node.
+    """The topics that the nodes of a graph publish, without the viewer's own.
 
     The lookup is cached, because each display without messages looks for publishers every second, and a configuration
     can have hundreds of displays.

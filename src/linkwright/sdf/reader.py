@@ -143,7 +143,7 @@ def read(document: Document) -> Reading:
 
 
 def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
-    """Return the object that an element describes, and report all mistakes in the element.
+    """Return the object that an element describes, and report all errors in the element.
 
     The caller must first check the element with `is_too_deep`.
     """

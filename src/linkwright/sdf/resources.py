@@ -72,7 +72,7 @@ class Missing(NamedTuple):
 
 
 class ResourceFinder:
-    """A finder of the files to which the URIs in worlds refer.
+    """A finder of the files that the URIs in worlds refer to.
 
     ``model://NAME/PATH`` is searched for as ``NAME/PATH`` in these folders, in this order:
 
@@ -294,7 +294,7 @@ class ResourceFinder:
 
 
 def fuel_caches(environment: Mapping[str, str]) -> Iterator[Path]:
-    """Yield the folders in which gz stores downloaded models, which may not exist."""
+    """Yield gz's folders of downloaded models, which may not exist."""
     cache_path = environment.get("GZ_FUEL_CACHE_PATH") or environment.get("IGN_FUEL_CACHE_PATH")
     if cache_path:
         yield Path(cache_path)

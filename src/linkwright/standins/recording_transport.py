@@ -132,7 +132,7 @@ class RecordOptions:
 
 
 class _Transport:
-    """The base class of recorders and players, each of which runs a node in a separate context."""
+    """The base class of recorders and players. Each runs a node in a separate context."""
 
     _cancelled: ClassVar[threading.Event]
 

@@ -155,7 +155,7 @@ def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[Run
 
 
 def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
-    """Return the selected steps in the order of the course: those of the lessons, or individual steps in them.
+    """Return the selected steps in the order of the course: the steps of the lessons, or individual ones.
 
     Raises:
         LinkwrightError: LEARN106, the course has no such lesson, or the lessons have no such step.

@@ -189,7 +189,7 @@ class BufferCore:
             return self._can_transform(fixed_frame, source_frame, to_nanoseconds(source_time)) if result[0] else result
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """Return the latest time for which all moving frames between two frames have transforms.
+        """Return the latest time with transforms for all moving frames between two frames.
 
         The result is zero if all frames between them are static.
 

@@ -109,7 +109,7 @@ def _step_name(step: str, titles: Mapping[str, LocalText]) -> str:
 
 
 def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText]) -> str:
-    """Return the section of a student, whose link target is inside ``details``, so that a link opens it."""
+    """Return the section of a student. Its link target is inside ``details``, so that a link opens it."""
     notes = "".join(f"<p class='soft'>{_texts(note)}</p>" for note in student.submission.notes)
     rows = [_format_step(student, step, mark, titles) for step, mark in student.marks.items()]
     headings = [

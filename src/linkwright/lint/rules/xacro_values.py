@@ -281,7 +281,7 @@ def _kind(value: object) -> Phrase:
 
 
 def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:
-    """Return an element and an attribute in which ``${name}`` becomes part of a name, or None.
+    """Return an element and its attribute that uses ``${name}`` as part of a name, or None.
 
     The element is inside `macro` or, if `macro` is None, outside all macros that hide the name.
     """

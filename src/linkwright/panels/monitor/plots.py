@@ -67,7 +67,7 @@ class SampleQueue:
 
 
 def thin_out(samples: NDArray[Any], max_count: int) -> NDArray[Any]:
-    """Return a limited number of samples whose plot looks nearly the same as that of all samples.
+    """Return a limited number of samples with nearly the same plot as all samples.
 
     The samples are divided into consecutive groups of equal size. The minimum and the maximum of each group are
     selected, in their original order.

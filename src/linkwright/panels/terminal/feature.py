@@ -175,7 +175,7 @@ class TerminalFeature(PageFeature):
         self._report()
 
     def _own(self, page: Page, message: Any) -> Terminal:
-        """Return the terminal to which a message refers, if the sending page shows this terminal.
+        """Return the terminal that a message names, if the sending page shows this terminal.
 
         Raises:
             _NotShownError: there is no such terminal, or the page does not show it.

@@ -69,7 +69,7 @@ _SCHEMA: Schema = (
 
 
 class MapDisplay(TopicDisplay):
-    """A display of an occupancy grid, to which partial updates are applied.
+    """A display of an occupancy grid with partial updates.
 
     By default the map follows its frame. With ``Use Timestamp``, the map stays at the pose that its frame had at the
     map's stamp.

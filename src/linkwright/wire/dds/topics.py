@@ -178,7 +178,7 @@ class OutgoingTopic(MirroredTopic):
         return False
 
     def write_queued(self) -> bool:
-        """Write the samples that need not wait for acknowledgments any longer.
+        """Write the samples that no longer need to wait for acknowledgments.
 
         Returns whether samples are still queued.
         """
