@@ -109,7 +109,7 @@ def configure_world(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of the world (default: 0)")
     _add_rival(parser)
     add_simulation_options(parser)
-    add_viewer_options(parser, terminal=False)
+    add_viewer_options(parser, offers_terminal=False)
 
 
 def _add_rival(parser: argparse.ArgumentParser) -> None:
