@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _MIN_SIDE, _MAX_SIDE, _MAX_PIXELS = 16, 16384, 25_000_000
 _MAX_ANIMATED_PIXELS = 400_000_000
 _MIN_SECONDS, _MAX_SECONDS = 0.5, 60.0
-_USUAL_SECONDS = 4
+_USUAL_DURATION_S = 4
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +67,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--turntable",
         type=_seconds,
         nargs="?",
-        const=_USUAL_SECONDS,
+        const=_USUAL_DURATION_S,
         metavar="SECONDS",
         help="write an animation of one turn, as APNG or WebP (default duration: %(const)s s)",
     )

@@ -82,7 +82,7 @@ class PublishedTopics:
         self._topics = {message: sorted(names) for message, names in topics.items()}
 
 
-_COLLECTION_SECONDS = 0.1
+_COLLECTION_S = 0.1
 """Seconds for which changes are collected before callbacks are called. A starting node creates dozens of endpoints."""
 
 
@@ -122,7 +122,7 @@ class GraphChanges:
 
     def _wait(self) -> None:
         if self._notify_timer is None and self._listeners:
-            self._notify_timer = self._loop.call_later(_COLLECTION_SECONDS, self._notify)
+            self._notify_timer = self._loop.call_later(_COLLECTION_S, self._notify)
 
     def _notify(self) -> None:
         self._notify_timer = None
