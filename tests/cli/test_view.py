@@ -29,8 +29,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ("words", "message"),
     [
         (["drive", "a:=b"], "'drive' is a recording, so show it by itself: omit a:=b"),
-        (["drive", "r.urdf"], "leave r.urdf out"),
-        (["drive", "--against", "HEAD"], "leave --against HEAD out"),
+        (["drive", "r.urdf"], "omit r.urdf"),
+        (["drive", "--against", "HEAD"], "omit --against HEAD"),
         (["r.urdf", "drive"], "'drive' is a recording, so show it without other files: linkwright view drive"),
         (["drive", "drive"], "several files are shown as one recording, and 'drive' is a folder: name its files"),
         (["r.urdf", "r.urdf", "-d", "v.rviz"], "omit -d"),
