@@ -35,7 +35,7 @@ _MAX_SECONDS = 30.0
 """The longest time that an answer may take."""
 
 _REFUSALS = (types.LSPErrorCodes.ContentModified, types.LSPErrorCodes.RequestFailed)
-"""The codes of errors that are answers, such as that a text has changed in the meantime."""
+"""The codes of errors that are answers, such as that a file has changed in the meantime."""
 
 _PIECES = (
     "<link",

@@ -37,11 +37,11 @@ class RemoteTransport(Transport):
     def close(self) -> None:
         pass
 
-    def _mirror(self, _work: object) -> None:
+    def _ignore(self, _work: object) -> None:
         pass
 
-    open_node = close_node = open_publisher = close_publisher = open_subscription = close_subscription = _mirror
-    open_service = close_service = open_client = close_client = _mirror
+    open_node = close_node = open_publisher = close_publisher = open_subscription = close_subscription = _ignore
+    open_service = close_service = open_client = close_client = _ignore
 
 
 class RemotePublisher:

@@ -6,7 +6,7 @@ import type { SelectedItem } from "./state/selection";
 import type { Session } from "./state/session";
 import type { Camera } from "./state/views/camera";
 import { shortNameOf } from "./state/views/catalog";
-import { number, readVector } from "./state/views/view-controller";
+import { readNumber, readVector } from "./state/views/view-controller";
 
 /**
  * The value of `window.linkwright`, for tests and curious users; each property is a copy made at the time of reading.
@@ -124,9 +124,9 @@ export function publishInspection(
       const [x, y, z] = readVector(values, "Focal Point", [0, 0, 0]);
       return {
         type: shortNameOf(current.cls),
-        yaw: number(values, "Yaw", 0),
-        pitch: number(values, "Pitch", 0),
-        distance: number(values, "Distance", 0),
+        yaw: readNumber(values, "Yaw", 0),
+        pitch: readNumber(values, "Pitch", 0),
+        distance: readNumber(values, "Distance", 0),
         focalPoint: [x, y, z],
         values: { ...values },
         camera,

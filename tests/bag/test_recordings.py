@@ -15,7 +15,7 @@ import yaml
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
-from linkwright.bag import STORAGES, BagReader, BagWriter, TopicSelection, summary_text
+from linkwright.bag import STORAGES, BagReader, BagWriter, TopicSelection, summarize_bag
 from linkwright.bag.names import belong_together
 from linkwright.bag.qos import from_library, parse_overrides, profile_for_playing, profile_for_recording, to_library
 from linkwright.cli import main
@@ -145,7 +145,7 @@ def test_single_file_recording_has_no_folder(tmp_path: Path) -> None:
         assert not bag.findings
         assert list(bag.messages()) == list(folder.messages())
         assert bag.topics == folder.topics
-        assert "Files:             run.mcap" in summary_text(bag)
+        assert "Files:             run.mcap" in summarize_bag(bag)
     with pytest.raises(LinkwrightError) as error:
         BagWriter(path, single_file=True)
     assert code_of(error) == "BAG105"
@@ -190,7 +190,7 @@ def test_numbered_files_without_metadata_form_one_recording(tmp_path: Path, stor
         assert bag.time_before(["/chatter"], START + 1_000_000_000) == START + 800_000_000
         assert sum(bag.counts(10)["/chatter"]) == 9
         assert sorted(bag.files) == sorted(files)
-        assert summary_text(bag).count("Type: std_msgs/msg/String | Count: 9") == 1
+        assert summarize_bag(bag).count("Type: std_msgs/msg/String | Count: 9") == 1
 
 
 def test_empty_part_is_skipped_with_warning(tmp_path: Path) -> None:
@@ -241,13 +241,13 @@ def test_empty_recording_can_be_read(tmp_path: Path) -> None:
     BagWriter(tmp_path / "bag").close()
     with BagReader(tmp_path / "bag") as bag:
         assert list(bag.messages()) == []
-        assert "Messages:          0" in summary_text(bag)
+        assert "Messages:          0" in summarize_bag(bag)
 
 
 def test_summary_lists_files_and_topics(tmp_path: Path) -> None:
     with BagReader(write(tmp_path)) as bag:
-        lines = summary_text(bag).splitlines()
-        assert summary_text(bag, topic_names_only=True) == "/chatter\n/joint_states\n"
+        lines = summarize_bag(bag).splitlines()
+        assert summarize_bag(bag, topic_names_only=True) == "/chatter\n/joint_states\n"
     assert lines[0] == ""
     assert lines[1] == "Files:             bag_0.mcap"
     assert lines[3] == "Storage id:        mcap"

@@ -403,7 +403,7 @@ def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, 
         EndpointKind.PUBLISHER, NodeIdentity("there", "/"), "/odd", "strange_msgs/msg/Odd", QoSProfile(10), bytes(16)
     )
     node = graph.create_node("there").handle
-    publisher = MirroredPublisher(node, info, publisher_stream(info, keyed=False))
+    publisher = MirroredPublisher(node, info, publisher_stream(info, is_keyed=False))
     publisher.expects_listeners = expects
     now[0] += seconds - 0.1
     publisher.put(b"first")

@@ -7,7 +7,7 @@ from linkwright.diagnostics import LinkwrightError
 
 
 @pytest.mark.parametrize(
-    ("allowed", "denied", "passing", "kept_back"),
+    ("allowed", "denied", "passing", "blocked"),
     [
         ((), (), ["/a", "/a/b"], []),
         (("/a",), (), ["/a", "/a/b/c"], ["/ab", "/b", "/b/a"]),
@@ -19,9 +19,9 @@ from linkwright.diagnostics import LinkwrightError
         (("/*",), (), ["/a", "/a/b/c"], []),
     ],
 )
-def test_name_filter_matches_allowed_names_and_those_below_them(allowed, denied, passing, kept_back):
+def test_name_filter_matches_allowed_names_and_names_below_them(allowed, denied, passing, blocked):
     name_filter = NameFilter(allowed, denied)
-    assert [name for name in (*passing, *kept_back) if name_filter.passes(name)] == passing
+    assert [name for name in (*passing, *blocked) if name_filter.passes(name)] == passing
 
 
 @pytest.mark.parametrize("pattern", ["", "scan", "/a/", "//", "/a b", "/a.*", "/[ab]"])

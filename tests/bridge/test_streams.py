@@ -25,15 +25,15 @@ def test_subscription_awaits_the_stream_that_its_publisher_uses(type_name, messa
     hashed = type_hash(type_name) if type_name.startswith("std_msgs") else OTHER_HASH
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed)
     subscription = endpoint(EndpointKind.SUBSCRIPTION, type_name, message and hashed)
-    assert publisher_stream(publisher, keyed=True) in awaited_streams(subscription, keyed=True)
+    assert publisher_stream(publisher, is_keyed=True) in awaited_streams(subscription, is_keyed=True)
 
 
 def test_type_hash_distinguishes_streams_only_when_keyed():
     ours, theirs = (
         endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", type_hash) for type_hash in ("", OTHER_HASH)
     )
-    assert publisher_stream(ours, keyed=True) != publisher_stream(theirs, keyed=True)
-    assert publisher_stream(ours, keyed=False) == publisher_stream(theirs, keyed=False)
+    assert publisher_stream(ours, is_keyed=True) != publisher_stream(theirs, is_keyed=True)
+    assert publisher_stream(ours, is_keyed=False) == publisher_stream(theirs, is_keyed=False)
 
 
 @pytest.mark.parametrize(
@@ -49,5 +49,5 @@ def test_type_hash_distinguishes_streams_only_when_keyed():
 def test_can_receive_depends_on_type_hash_and_reliability(type_name, hashed, qos, over_dds, over_zenoh):
     subscription = endpoint(EndpointKind.SUBSCRIPTION, "std_msgs/msg/String", "")
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed, qos)
-    assert can_receive(subscription, publisher, keyed=False) == over_dds
-    assert can_receive(subscription, publisher, keyed=True) == over_zenoh
+    assert can_receive(subscription, publisher, is_keyed=False) == over_dds
+    assert can_receive(subscription, publisher, is_keyed=True) == over_zenoh

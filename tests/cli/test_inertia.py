@@ -68,7 +68,7 @@ def test_link_option_prints_inertial_block_after_table(model, capsys):
         '    <inertia ixx="0.00533333" ixy="0" ixz="0" iyy="0.00533333" iyz="0" izz="0.00533333"/>\n'
         "  </inertial>\n"
         "\n"
-        "wheel: 1 collision shape, mass as given: 0.5 kg at 119.4 kg/m3\n"
+        "wheel: 1 collision shape, requested mass: 0.5 kg at 119.4 kg/m3\n"
         "  <inertial>\n"
         '    <origin xyz="0 0 0" rpy="0 0 0"/>\n'
         '    <mass value="0.5"/>\n'

@@ -28,12 +28,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["drive", "a:=b"], "'drive' is a recording, which is shown by itself: leave a:=b out"),
-        (["drive", "r.urdf"], "leave r.urdf out"),
-        (["drive", "--against", "HEAD"], "leave --against HEAD out"),
-        (["r.urdf", "drive"], "'drive' is a recording, which is shown by itself: linkwright view drive"),
+        (["drive", "a:=b"], "'drive' is a recording, so show it by itself: omit a:=b"),
+        (["drive", "r.urdf"], "omit r.urdf"),
+        (["drive", "--against", "HEAD"], "omit --against HEAD"),
+        (["r.urdf", "drive"], "'drive' is a recording, so show it without other files: linkwright view drive"),
         (["drive", "drive"], "several files are shown as one recording, and 'drive' is a folder: name its files"),
-        (["r.urdf", "r.urdf", "-d", "v.rviz"], "leave -d out"),
+        (["r.urdf", "r.urdf", "-d", "v.rviz"], "omit -d"),
     ],
 )
 @pytest.mark.usefixtures("folder")

@@ -13,18 +13,18 @@ GLOSSARY = DOCS / "glossary.md"
 TOOL = load_tool("plain_words")
 
 
-def rows(text: str) -> list[list[str]]:
+def table_rows(text: str) -> list[list[str]]:
     """Return the cells of all rows of the tables with four columns."""
-    found = [
+    all_rows = [
         [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")
     ]
-    return [row for row in found if len(row) == 4 and not set(row[0]) <= set("- ")]
+    return [row for row in all_rows if len(row) == 4 and not set(row[0]) <= set("- ")]
 
 
 def test_words_ruled_out_by_glossary_are_refused():
     ruled_out = [
         word
-        for *_, words in rows(GLOSSARY.read_text(encoding="utf-8"))
+        for *_, words in table_rows(GLOSSARY.read_text(encoding="utf-8"))
         for word in words.split(", ")
         if word not in ("", "not")
     ]
@@ -36,8 +36,8 @@ def test_words_ruled_out_by_glossary_are_refused():
 
 
 def test_both_glossaries_list_same_words():
-    chinese = rows((DOCS / "zh" / "glossary.md").read_text(encoding="utf-8"))
-    english = [row[0] for row in rows(GLOSSARY.read_text(encoding="utf-8")) if row[0] != "word"]
+    chinese = table_rows((DOCS / "zh" / "glossary.md").read_text(encoding="utf-8"))
+    english = [row[0] for row in table_rows(GLOSSARY.read_text(encoding="utf-8")) if row[0] != "word"]
     assert [row[1] for row in chinese if row[1] != "英文"] == [
         word for word in english if word != "user, subscriber, node"
     ]

@@ -225,7 +225,7 @@ def test_missing_fixed_frame_is_reported():
 def test_message_in_missing_frame_is_reported():
     lost = ObservedFrame("/scan", "/laser", "lazer")
     diagnostic = only_diagnostic(replace(WELL, frames=(lost,)), "DOC310")
-    assert diagnostic.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
+    assert diagnostic.message == "'/laser' publishes '/scan' in frame 'lazer', which does not exist"
     assert "static_transform_publisher" in diagnostic.hint
     near = only_diagnostic(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
     rays = [ObservedFrame(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]

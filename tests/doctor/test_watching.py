@@ -195,6 +195,6 @@ async def test_late_transforms_of_known_publisher_are_waited_for(joined: Graph, 
 
 
 async def test_wait_for_missing_transforms_ends_after_timeout(joined: Graph, monkeypatch) -> None:
-    monkeypatch.setattr("linkwright.doctor.watching._TRANSFORMS_WITHIN", 0.3)
+    monkeypatch.setattr("linkwright.doctor.watching._TRANSFORMS_TIMEOUT_S", 0.3)
     joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, "/tf", 10)
     assert not (await observe_graph(joined, RemoteTransport())).transforms

@@ -146,7 +146,7 @@ CASES = {
     ),
     "type.glb": (
         glb(lambda contents: contents["accessors"][0].update(componentType=1)),
-        "accessors[0].componentType is 1, which glTF does not have",
+        "accessors[0].componentType is 1, which glTF does not define",
     ),
     "long.glb": (
         glb(lambda contents: contents["bufferViews"][0].update(byteLength=999)),

@@ -31,7 +31,7 @@ def test_signal_during_destructor_is_not_lost(
     number: int, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # After the deadline, the watch would end the process of pytest.
-    monkeypatch.setattr(signals, "_DEADLINE_SECONDS", SECONDS)
+    monkeypatch.setattr(signals, "_DEADLINE_S", SECONDS)
     hook = sys.unraisablehook
     watch = SignalWatch()
 

@@ -95,7 +95,7 @@ def test_call_of_launch_waits_without_load_only(monkeypatch):
     loop = check._loop
     thread = threading.Thread(target=loop.run_forever)
     thread.start()
-    monkeypatch.setattr(launched, "_WAIT_SECONDS", 0.05)
+    monkeypatch.setattr(launched, "_WAIT_S", 0.05)
     loop.call_soon_threadsafe(time.sleep, 0.3)
     with pytest.raises(TimeoutError):
         check._call(lambda: 1)

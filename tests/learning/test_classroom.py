@@ -109,7 +109,7 @@ def test_catch_up_takes_over_earlier_steps(workspace, capsys, grown_course):
     assert backup.read_text() == "mine"
     _, out, _ = learn(capsys, "list")
     assert "  ✓ one: One\n  → two: Two\n\nb: L\n  → one: One\n    two: Two\n" in out
-    assert "taken over from the course" in out
+    assert "solution copied from the course" in out
     status, out, err = learn(capsys, "catch-up", "b/two")
     assert (status, out, "nothing to write" in err) == (1, "", True)
 
@@ -128,7 +128,7 @@ def test_failed_check_names_unfinished_earlier_steps(workspace, capsys, grown_co
     status, out, _ = learn(capsys, "check", "b/one", "--course", grown_course)
     assert (status, out.splitlines()[-1]) == (
         1,
-        "unfinished steps before this one: 2; `linkwright learn catch-up b/one` takes them over from the course",
+        "unfinished steps before this one: 2; `linkwright learn catch-up b/one` copies their solutions from the course",
     )
     learn(capsys, "catch-up", "b/one", "--yes")
     assert "catch-up" not in learn(capsys, "check", "b/one")[1]

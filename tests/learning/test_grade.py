@@ -353,7 +353,7 @@ def test_unusual_folders_have_notes(folder, capsys):
     assert notes["other"] == "learn.yaml belongs to the course 'robot' and was not used"
     assert "does not contain the progress" in notes["yaml"]
     assert notes["without"] == "there is no learn.yaml, so there are no answers"
-    assert notes["file.txt"] == "it is a file and not the folder of a student"
+    assert notes["file.txt"] == "it is a file, not a student's folder"
     assert notes["file.zip"] == "it is an archive; unpack it first"
     assert notes["packed"] == "the folder contains only the archive 'workspace.tar.gz'; unpack it first"
     points = {name: student["points"] for name, student in report.items()}

@@ -161,7 +161,7 @@ async def test_page_with_terminals_is_never_embedded(tmp_path):
 
 
 async def test_unresponsive_server_is_abandoned_after_timeout(monkeypatch):
-    monkeypatch.setattr("linkwright.page.program_pages._TIMEOUT", 0.1)
+    monkeypatch.setattr("linkwright.page.program_pages._TIMEOUT_S", 0.1)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"http://127.0.0.1:{silent.getsockname()[1]}/programs/abc"
         async with program() as server:
@@ -184,7 +184,7 @@ def test_embedder_has_origin_and_path_of_address():
 
 
 async def test_closing_server_does_not_wait_for_programs(tmp_path, monkeypatch):
-    monkeypatch.setattr("linkwright.page.server._CLOSE_TIMEOUT", 600.0)
+    monkeypatch.setattr("linkwright.page.server._CLOSE_TIMEOUT_S", 600.0)
     async with classroom(tmp_path) as world, program() as server:
         async with page(world.viewer):
             assert await server.embed(environment(world), "")

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.process.patience import PatientClock
 
-BUSY = "import os, sys; os.sched_setaffinity(0, [int(sys.argv[1])])\nwhile True: pass"
+BUSY_LOOP = "import os, sys; os.sched_setaffinity(0, [int(sys.argv[1])])\nwhile True: pass"
 
 
 def test_patient_clock_counts_sleep():
@@ -24,7 +24,7 @@ def test_patient_clock_counts_sleep():
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports how long a process waits")
 def test_patient_clock_excludes_waiting_for_processor():
     processor = str(min(os.sched_getaffinity(0)))
-    processes = [subprocess.Popen([sys.executable, "-c", BUSY, processor]) for _ in range(4)]
+    processes = [subprocess.Popen([sys.executable, "-c", BUSY_LOOP, processor]) for _ in range(4)]
     try:
         clock = PatientClock()
         begin = time.monotonic()

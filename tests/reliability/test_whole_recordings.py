@@ -22,7 +22,7 @@ from linkwright.graph import Graph
 from linkwright.hosting import signals
 from linkwright.messages import String, serialize
 
-signals._DEADLINE_SECONDS = 0.1
+signals._DEADLINE_S = 0.1
 watch = signals.SignalWatch()
 
 async def main():

@@ -121,8 +121,8 @@ def test_rvl_decoder_survives_arbitrary_bytes(data, pixels):
 @pytest.mark.parametrize(
     ("form", "data", "text"),
     [
-        ("jpeg", header() + png(MILLIMETERS), "The format of the depth image is 'jpeg'; supported are 16UC1"),
-        ("16UC1; compressedDepth zip", header() + png(MILLIMETERS), "supported are 16UC1, mono16 and 32FC1"),
+        ("jpeg", header() + png(MILLIMETERS), "The format of the depth image is 'jpeg', but only 16UC1"),
+        ("16UC1; compressedDepth zip", header() + png(MILLIMETERS), "but only 16UC1, mono16 and 32FC1 are supported"),
         ("8UC1; compressedDepth png", header() + png(MILLIMETERS), "The format of the depth image is '8UC1;"),
         ("16UC1; compressedDepth png", header()[:7], "has 7 bytes, so it has no data after its header"),
         ("16UC1; compressedDepth png", header() + b"depths", "neither a PNG nor a JPEG"),

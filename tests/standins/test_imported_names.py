@@ -1,4 +1,4 @@
-"""Names that modules offer only because ROS's modules import them: many programs use these."""
+"""Names that modules offer only because ROS's modules import them. Many programs use these names."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def test_interrupted_sweep_keeps_its_paths(tmp_path):
     run_sweep(tmp_path, DRIVEN, paths="whole.json")
     (tmp_path / "out.csv").unlink()
     run_sweep(tmp_path, DRIVEN, until=2, paths="paths.json")
-    with pytest.raises(LinkwrightError, match="has other runs than this one"):
+    with pytest.raises(LinkwrightError, match="differ from the runs of this one"):
         run_sweep(tmp_path, DRIVEN, resume=True)
     run_sweep(tmp_path, DRIVEN, resume=True, paths="paths.json")
     assert (tmp_path / "paths.json").read_bytes() == (tmp_path / "whole.json").read_bytes()

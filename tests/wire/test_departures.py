@@ -78,7 +78,7 @@ def test_participant_of_ended_process_is_lost_before_lease_expires(monkeypatch):
     running = True
     monkeypatch.setattr("linkwright.wire.dds.remote.is_process_running", lambda _: running)
     scene = DepartureScene(RemoteParticipant(PARTICIPANT, peer_process=7))
-    assert scene.after(0.0) == departures.POLL_SECONDS
+    assert scene.after(0.0) == departures.POLL_S
     running = False
     scene.after(1.0)
     assert not scene.lost

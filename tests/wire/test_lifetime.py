@@ -74,7 +74,7 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
             engines.append(self)
 
     monkeypatch.setattr(engine, "Engine", Late)
-    monkeypatch.setattr(background, "_JOINED_WITHIN", 0.0)
+    monkeypatch.setattr(background, "_JOIN_TIMEOUT_S", 0.0)
     process = processes("ours", join_now=False)
     joining = join(process.graph)
     joining.close()

@@ -1,6 +1,6 @@
 import { Mesh, MeshLambertMaterial } from "three";
 import type { ViewState } from "../state/view";
-import { number } from "../state/views/view-controller";
+import { readNumber } from "../state/views/view-controller";
 import { unitSphere } from "./objects/geometries";
 
 /** The disc at the focal point, visible only while the view is being dragged. */
@@ -22,7 +22,7 @@ export class FocalShape {
     this.root.visible = this.isShown && camera.focal !== null;
     if (!camera.focal) return;
     const hasFixedSize = values["Focal Shape Fixed Size"] !== false;
-    const diameter = number(values, "Focal Shape Size", 0.05) * (hasFixedSize ? 1 : number(values, "Distance", 1));
+    const diameter = readNumber(values, "Focal Shape Size", 0.05) * (hasFixedSize ? 1 : readNumber(values, "Distance", 1));
     this.root.position.set(...camera.focal);
     this.root.scale.set(diameter / 2, diameter / 2, diameter / 10);
     this.root.material.color.set(controller.focalColor);

@@ -13,7 +13,7 @@ import {
 } from "three";
 import type { ViewState } from "../state/view";
 import { FIELD_OF_VIEW, type Camera, type ViewSize } from "../state/views/camera";
-import { number } from "../state/views/view-controller";
+import { readNumber } from "../state/views/view-controller";
 import { distanceBetween } from "../state/views/vector";
 import { AMBIENT } from "./light";
 import { Smoothing } from "./smoothing";
@@ -118,7 +118,7 @@ export class Viewport {
   aim(view: ViewState): void {
     const viewCamera = view.camera;
     this.activeCamera = viewCamera.scale === null ? this.perspective : this.orthographic;
-    this.project(viewCamera, number(view.values, "Near Clip Distance", 0.01));
+    this.project(viewCamera, readNumber(view.values, "Near Clip Distance", 0.01));
     this.applyShift();
     this.activeCamera.matrix
       .makeBasis(new Vector3(...viewCamera.right), new Vector3(...viewCamera.up), new Vector3(...viewCamera.back))

@@ -8,11 +8,11 @@ import { ThinLines } from "./objects/thin-lines";
 import type { ToolEvent } from "./tools/tool";
 
 /** The tools that leave mouse events on models to other handlers. */
-export const HANDLING_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
+export const PASSIVE_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
 /** The minimum time between two requests of a page, ms. */
 const PERIOD_MS = 50;
 /** The force in N per m between the pulled point of a link and the mouse. */
-const STIFFNESS = 50;
+const PULL_STIFFNESS_N_PER_M = 50;
 const PULL_COLOR = "#ff2f6d";
 /** Drawn last, to be visible through everything. */
 const RENDER_ORDER = 1000;
@@ -64,7 +64,7 @@ export class WorldHandling {
       return true;
     }
     const { simulation, modeling, tools } = this.session;
-    if (!simulation.isPresent || modeling.isActive || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
+    if (!simulation.isPresent || modeling.isActive || (tools.current && !PASSIVE_TOOLS.includes(tools.current.cls))) return false;
     if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
     if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
     return false;
@@ -124,7 +124,7 @@ export class WorldHandling {
   private send({ drawing, link, point, offset, isPull }: ModelGrab): void {
     const { simulation } = this.session;
     const inWorld = drawing.transformToWorld(offset);
-    if (isPull) simulation.push(link, point.toArray(), inWorld.multiplyScalar(STIFFNESS).toArray());
+    if (isPull) simulation.push(link, point.toArray(), inWorld.multiplyScalar(PULL_STIFFNESS_N_PER_M).toArray());
     else simulation.drag(modelOf(link), inWorld.toArray(), false);
   }
 

@@ -3,7 +3,7 @@ import type { Property, PropertyValue, SavedView, View, ViewClass } from "../pro
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
 import type { PageMemory } from "./page-memory";
-import { transformToFixed, transformToTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
+import { transformToFixed, transformToTarget, FIXED, transformPointToTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
 import { contains, transformBounds } from "./views/fit";
 import { distanceBetween, type Bounds, type Vector } from "./views/vector";
@@ -197,7 +197,7 @@ export class ViewState {
 
   /** Moves the focal point, given in the fixed frame. */
   lookAt(point: Vector): void {
-    this.update(this.controller.lookAt(this.view.values, toTarget(point, this.target)));
+    this.update(this.controller.lookAt(this.view.values, transformPointToTarget(point, this.target)));
   }
 
   /** Changes the class of the view, and keeps the camera as far as the class permits. */

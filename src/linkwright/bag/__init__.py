@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from linkwright.bag.recorder import Recorder
     from linkwright.bag.recorder_services import RecorderServices
     from linkwright.bag.selection import TopicSelection
-    from linkwright.bag.summary import format_summary, summary_text
+    from linkwright.bag.summary import format_summary, summarize_bag
     from linkwright.bag.writing import COMPRESSIONS, STORAGES, BagWriter
 
 __all__ = [
@@ -39,7 +39,7 @@ __all__ = [
     "TopicSelection",
     "format_summary",
     "is_recording",
-    "summary_text",
+    "summarize_bag",
 ]
 
 __getattr__ = deferred(
@@ -54,7 +54,7 @@ __getattr__ = deferred(
         "recorder": ("Recorder",),
         "recorder_services": ("RecorderServices",),
         "selection": ("TopicSelection",),
-        "summary": ("format_summary", "summary_text"),
+        "summary": ("format_summary", "summarize_bag"),
         "writing": ("COMPRESSIONS", "STORAGES", "BagWriter"),
     },
 )

@@ -65,7 +65,7 @@ def header_patch(file: BinaryIO) -> dict[int, bytes]:
 
 
 def schema_patch(offset: int, content: bytes) -> dict[int, bytes]:
-    """Return the patch that empties a schema in a language that ROS 2 does not use.
+    """Return the patch that empties a schema if ROS 2 does not use its language.
 
     The result is empty for any other schema.
 

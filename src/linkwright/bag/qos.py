@@ -124,7 +124,7 @@ def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def _compatibility_key(qos: QoSProfile) -> tuple[object, ...]:
-    """Return the policies of a profile that determine which subscriptions are compatible."""
+    """Return the policies of a profile that decide which subscriptions are compatible."""
     durations = (qos.deadline.nanoseconds, qos.liveliness_lease_duration.nanoseconds)
     return (qos.reliability, qos.durability, qos.liveliness, *durations)
 

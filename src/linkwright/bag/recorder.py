@@ -20,8 +20,8 @@ from linkwright.graph import Node, QoSProfile
 from linkwright.graph.endpoints.base import MessageInfo
 from linkwright.messages import get_message
 
-_FLUSH_SECONDS = 1.0
-_POLL_SECONDS = 0.1
+_FLUSH_S = 1.0
+_POLL_S = 0.1
 
 
 class Recorder:
@@ -53,7 +53,7 @@ class Recorder:
         *,
         overrides: Mapping[str, QoSProfile] | None = None,
         discover: bool = True,
-        polling_seconds: float = _POLL_SECONDS,
+        polling_seconds: float = _POLL_S,
         without_publishers: bool = False,
         without_subscriptions: bool = True,
         paused: bool = False,
@@ -76,7 +76,7 @@ class Recorder:
         self._discovery_timer = (
             node.create_timer(polling_seconds, wrap_callback(self._subscribe_to_new_topics)) if discover else None
         )
-        self._flush_timer = node.create_timer(_FLUSH_SECONDS, wrap_callback(writer.flush))
+        self._flush_timer = node.create_timer(_FLUSH_S, wrap_callback(writer.flush))
         self._subscribe_to_new_topics()
 
     @property

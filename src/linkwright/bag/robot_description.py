@@ -1,4 +1,4 @@
-"""The robot description that a recording contains, or the hash of the description with which it was made."""
+"""The robot description in a recording, or the hash of the recorded robot's description."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from linkwright.bag.reading import BagReader, BagTopic
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 
-def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
+def summarize_bag(bag: BagReader, *, topic_names_only: bool = False) -> str:
     """Return the summary of a recording in the format of ``ros2 bag info``.
 
     The summary contains files, times and topics.

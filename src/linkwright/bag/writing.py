@@ -37,7 +37,7 @@ _WRITE_ERRORS = (OSError, sqlite3.Error)
 """The errors that a full disk causes."""
 
 
-_MAX_WRITE_SECONDS = 30.0
+_MAX_WRITE_S = 30.0
 """The seconds that `BagWriter.finish` waits for another thread's write. Disks can be slow."""
 
 
@@ -240,7 +240,7 @@ class BagWriter:
         Callable from any thread except the writing one.
         """
         self._is_ending = True
-        if not self._lock.acquire(timeout=_MAX_WRITE_SECONDS):
+        if not self._lock.acquire(timeout=_MAX_WRITE_S):
             return
         try:
             with contextlib.suppress(LinkwrightError):  # the process is ending, so an error can no longer be reported

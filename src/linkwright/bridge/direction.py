@@ -106,7 +106,7 @@ class Direction:
                 self._nodes[name] = self._target.open_node(node)
         for gid, info in self._selected_publishers.items():
             if gid not in self._publishers:
-                stream = publisher_stream(info, keyed=self._source.needs_hashes)
+                stream = publisher_stream(info, is_keyed=self._source.needs_hashes)
                 self._publishers[gid] = MirroredPublisher(self._mirror_node(info), info, stream)
             if self._publishers[gid].has_queued_messages:
                 self._publishers[gid].expects_listeners = self._is_expected(info)
@@ -147,7 +147,7 @@ class Direction:
         """Return whether a mirrored publisher matches a subscription in the target."""
         return any(
             publisher.info.name == subscription.name
-            and can_receive(subscription, publisher.info, keyed=self._target.needs_hashes)
+            and can_receive(subscription, publisher.info, is_keyed=self._target.needs_hashes)
             for publisher in self._publishers.values()
         )
 
@@ -229,13 +229,13 @@ class Direction:
             if info.kind is EndpointKind.SUBSCRIPTION
             and self._names.passes(info.name)
             and endpoint_provision(info) not in source_snapshot.mirrored_endpoints
-            for stream in awaited_streams(info, keyed=self._source.needs_hashes)
+            for stream in awaited_streams(info, is_keyed=self._source.needs_hashes)
         }
 
     def _is_expected(self, publisher: EndpointInfo) -> bool:
         """Return whether a subscription in the target can receive from the mirror of a publisher."""
         subscriptions = self._target.snapshot.subscriptions.get(publisher.name, ())
-        return any(can_receive(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in subscriptions)
+        return any(can_receive(endpoint, publisher, is_keyed=self._target.needs_hashes) for endpoint in subscriptions)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
         """Return whether a topic or service with this type can be created in the target.

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from linkwright.bridge.outlet import Outlet
-from linkwright.bridge.streams import KEPT, Stream, offered_profile
+from linkwright.bridge.streams import HISTORY_DEPTH, Stream, offered_profile
 from linkwright.graph.endpoints.base import EndpointInfo, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
@@ -39,7 +39,7 @@ class Tap:
 
     def __init__(self, node: NodeHandle, stream: Stream, on_message: Callable[[Tap, bytes, MessageInfo], None]) -> None:
         qos = QoSProfile(
-            depth=KEPT if stream.has_history else _QUEUE_LENGTH,
+            depth=HISTORY_DEPTH if stream.has_history else _QUEUE_LENGTH,
             history=stream.history,
             reliability=stream.reliability,
             durability=stream.durability,
@@ -84,7 +84,7 @@ class MirroredPublisher:
         publisher: Publisher[Any] = Publisher(node, info.type_name, info.name, offered_profile(info.qos))
         publisher.type_hash = info.type_hash
         publisher.raw = True
-        self._waiting: deque[bytes] | None = deque(maxlen=KEPT)
+        self._waiting: deque[bytes] | None = deque(maxlen=HISTORY_DEPTH)
         self._created_at = time.monotonic()
         self.expects_listeners = False
         self._publisher = node.add(publisher)

@@ -15,8 +15,8 @@ from linkwright.graph.qos.profile import (
 )
 from linkwright.messages import InterfaceNotFoundError, type_hash
 
-KEPT = 1000
-"""The queue length for messages that must not be lost: those for late joiners, and those of a new publisher."""
+HISTORY_DEPTH = 1000
+"""The queue length for messages that must not be lost: messages for late joiners and of new publishers."""
 
 _ASSUMED_DEPTH = 10
 """The depth of a publisher that does not announce its history, such as a publisher of Fast DDS."""
@@ -49,49 +49,49 @@ class Stream(NamedTuple):
         return self.durability is DurabilityPolicy.TRANSIENT_LOCAL
 
 
-def publisher_stream(publisher: EndpointInfo, *, keyed: bool) -> Stream:
+def publisher_stream(publisher: EndpointInfo, *, is_keyed: bool) -> Stream:
     """Return the stream that a publisher is part of.
 
     Args:
         publisher: the publisher.
-        keyed: whether topics are separated by the hash of their type, and endpoints are not separated by quality of
+        is_keyed: whether topics are separated by the hash of their type, and endpoints are not separated by quality of
             service, as over Zenoh.
     """
     qos = offered_profile(publisher.qos)
-    reliability = ReliabilityPolicy.RELIABLE if keyed else qos.reliability
-    return _stream(publisher, reliability, qos.durability, qos.history, keyed=keyed)
+    reliability = ReliabilityPolicy.RELIABLE if is_keyed else qos.reliability
+    return _stream(publisher, reliability, qos.durability, qos.history, is_keyed=is_keyed)
 
 
-def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
+def awaited_streams(subscription: EndpointInfo, *, is_keyed: bool) -> set[Stream]:
     """Return the streams of volatile publishers that may still appear and reach a subscription.
 
     Streams with history are subscribed to only after their publishers have appeared.
 
     Args:
         subscription: the subscription.
-        keyed: see `publisher_stream`; if false, few subscriptions announce their history.
+        is_keyed: see `publisher_stream`; if false, few subscriptions announce their history.
     """
     volatile, keep_last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
     reliable = ReliabilityPolicy.RELIABLE
-    streams = {_stream(subscription, reliable, volatile, keep_last, keyed=keyed)}
-    if keyed or subscription.qos.history is HistoryPolicy.KEEP_ALL:
-        streams.add(_stream(subscription, reliable, volatile, HistoryPolicy.KEEP_ALL, keyed=keyed))
-    if not keyed and subscription.qos.reliability is not reliable:
-        streams.add(_stream(subscription, ReliabilityPolicy.BEST_EFFORT, volatile, keep_last, keyed=keyed))
+    streams = {_stream(subscription, reliable, volatile, keep_last, is_keyed=is_keyed)}
+    if is_keyed or subscription.qos.history is HistoryPolicy.KEEP_ALL:
+        streams.add(_stream(subscription, reliable, volatile, HistoryPolicy.KEEP_ALL, is_keyed=is_keyed))
+    if not is_keyed and subscription.qos.reliability is not reliable:
+        streams.add(_stream(subscription, ReliabilityPolicy.BEST_EFFORT, volatile, keep_last, is_keyed=is_keyed))
     return streams
 
 
-def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
+def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, is_keyed: bool) -> bool:
     """Return whether a subscription can receive from the mirror of a topic's publisher.
 
     Args:
         subscription: the subscription, in the target network.
         publisher: the publisher in the source network, whose offered profile the mirror has.
-        keyed: see `publisher_stream`, for the target network.
+        is_keyed: see `publisher_stream`, for the target network.
     """
     if subscription.type_name != publisher.type_name:
         return False
-    if keyed:
+    if is_keyed:
         return len({endpoint_hash(subscription), endpoint_hash(publisher)} - {""}) <= 1
     return not incompatible_policies(offered_profile(publisher.qos), subscription.qos)
 
@@ -101,10 +101,10 @@ def endpoint_hash(endpoint: EndpointInfo) -> str:
 
     The hash is the announced hash, or the hash of the local definition.
     """
-    return endpoint.type_hash or _known_hash(endpoint)
+    return endpoint.type_hash or _local_hash(endpoint)
 
 
-def _known_hash(endpoint: EndpointInfo) -> str:
+def _local_hash(endpoint: EndpointInfo) -> str:
     try:
         return type_hash(endpoint.type_name)
     except InterfaceNotFoundError:
@@ -117,10 +117,10 @@ def _stream(
     durability: DurabilityPolicy,
     history: HistoryPolicy,
     *,
-    keyed: bool,
+    is_keyed: bool,
 ) -> Stream:
     # An endpoint whose type is unknown here may not announce the hash, but still receives from publishers of its type.
-    stream_hash = endpoint_hash(endpoint) if keyed and _known_hash(endpoint) else ""
+    stream_hash = endpoint_hash(endpoint) if is_keyed and _local_hash(endpoint) else ""
     return Stream(endpoint.name, endpoint.type_name, stream_hash, reliability, durability, history)
 
 
@@ -135,7 +135,7 @@ def offered_profile(qos: QoSProfile) -> QoSProfile:
     is_best_effort = qos.reliability is ReliabilityPolicy.BEST_EFFORT
     is_manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
     return QoSProfile(
-        depth=qos.depth if is_announced else KEPT if is_transient_local else _ASSUMED_DEPTH,
+        depth=qos.depth if is_announced else HISTORY_DEPTH if is_transient_local else _ASSUMED_DEPTH,
         history=HistoryPolicy.KEEP_ALL if keeps_all else HistoryPolicy.KEEP_LAST,
         reliability=ReliabilityPolicy.BEST_EFFORT if is_best_effort else ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if is_transient_local else DurabilityPolicy.VOLATILE,

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 _STATUS = {1: "ACCEPTED", 2: "EXECUTING", 3: "CANCELING", 4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}
-_CANCEL_TIMEOUT = 3.0
+_CANCEL_TIMEOUT_S = 3.0
 """Seconds to wait for the server's response when Ctrl-C cancels a goal."""
 
 
@@ -166,7 +166,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
 
 async def _cancel(session: Session, handle: Any) -> None:
     print("Canceling goal...")
-    response = await session.wait_for_result(handle.cancel_goal_async(), _CANCEL_TIMEOUT)
+    response = await session.wait_for_result(handle.cancel_goal_async(), _CANCEL_TIMEOUT_S)
     if response is None:
         print("The server does not respond; the goal may still be active")
     elif not response.goals_canceling:

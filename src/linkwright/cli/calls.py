@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-APPEARS_WITHIN = 5.0
+APPEARS_TIMEOUT_S = 5.0
 """Seconds to wait for a service that a node should have, as in ros2cli."""
 
 
@@ -36,7 +36,7 @@ async def call(
         service_name: the absolute name.
         request: the request message.
         timeout: the time to wait for the response, in seconds; None for no limit.
-        extra_wait: the time to wait for the service in addition to `APPEARS_WITHIN`, in seconds; a line on standard
+        extra_wait: the time to wait for the service in addition to `APPEARS_TIMEOUT_S`, in seconds; a line on standard
             error announces this wait.
 
     Raises:
@@ -46,7 +46,7 @@ async def call(
 
     client = session.node.create_client(get_service(service_type), service_name)
     try:
-        is_ready = await session.wait_until(client.service_is_ready, APPEARS_WITHIN)
+        is_ready = await session.wait_until(client.service_is_ready, APPEARS_TIMEOUT_S)
         if not is_ready and extra_wait > 0:
             print(f"waiting for service '{service_name}' to become available...", file=sys.stderr, flush=True)
             is_ready = await session.wait_until(client.service_is_ready, extra_wait)

@@ -82,8 +82,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--changed",
         metavar="COMMIT",
-        help="check only descriptions and packages that changes since a commit of git can affect, and report only the "
-        "findings that the commit does not have",
+        help="check only the descriptions and packages that the changes since a git commit "
+        "affect, and report only new findings",
     )
     parser.add_argument(
         "--baseline",

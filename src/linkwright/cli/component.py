@@ -323,7 +323,7 @@ def _log_level(text: str | None) -> int:
             Diagnostic(
                 "CLI435",
                 phrase("there is no log level '{level}'", level=text),
-                hint=phrase("levels are {levels}", levels=levels),
+                hint=phrase("the levels are {levels}", levels=levels),
             )
         ) from None
 

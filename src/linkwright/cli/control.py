@@ -26,13 +26,13 @@ Ask = Callable[..., Coroutine[Any, Any, Any]]
 Its keyword arguments are the fields of the request.
 """
 
-MANAGER_WITHIN = 55.0
+MANAGER_EXTRA_WAIT_S = 55.0
 """Seconds to wait for the manager in addition to the usual time.
 
 A simulated robot starts the manager late.
 """
 _LOGS_HINT = "check controller_manager logs"
-_SECTIONS = {
+_INTERFACE_SECTIONS = {
     "claimed_interfaces": "claimed interfaces",
     "required_command_interfaces": "required command interfaces",
     "required_state_interfaces": "required state interfaces",
@@ -67,7 +67,7 @@ def _run(job: Callable[[argparse.Namespace, Ask], Coroutine[Any, Any, int]], arg
         async def ask(service: str, **fields: Any) -> Any:
             service_type = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
             name, request = f"{manager}/{service}", get_service(service_type).Request(**fields)
-            return await call(session, service_type, name, request, extra_wait=MANAGER_WITHIN)
+            return await call(session, service_type, name, request, extra_wait=MANAGER_EXTRA_WAIT_S)
 
         return await job(arguments, ask)
 
@@ -83,7 +83,7 @@ def _report_failure(text: str) -> int:
 
 
 def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
-    for name in _SECTIONS:
+    for name in _INTERFACE_SECTIONS:
         parser.add_argument(f"--{name.replace('_', '-')}", action="store_true", help="also print these interfaces")
     parser.add_argument("-v", "--verbose", action="store_true", help="also print all of these interfaces")
     _add_common_arguments(parser)
@@ -99,7 +99,7 @@ async def _list_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
     )
     for controller in controllers:
         print(f"{controller.name:<{name_width}} {controller.type:<{type_width}}  {controller.state:<{state_width}}")
-        for section, title in _SECTIONS.items():
+        for section, title in _INTERFACE_SECTIONS.items():
             if arguments.verbose or getattr(arguments, section):
                 print(f"\t{title}:")
                 for interface in _interfaces(controller, section):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from linkwright.doctor import FixedFrame, Observation
 
 
-_DEFAULT_SECONDS = 3.0
+_DEFAULT_DURATION_S = 3.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--seconds",
         metavar="SECONDS",
         type=positive_float,
-        default=_DEFAULT_SECONDS,
+        default=_DEFAULT_DURATION_S,
         help="the time to observe the graph (default: %(default)g)",
     )
     parser.add_argument(

@@ -33,7 +33,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--check", action="store_true", help="change nothing; exit with status 1 if a file would change"
     )
     parser.add_argument(
-        "--diff", action="store_true", help="change nothing; print the changes, and exit as --check does"
+        "--diff",
+        action="store_true",
+        help="change nothing; print the changes, and exit with the same status as --check",
     )
     parser.add_argument(
         "--indent",

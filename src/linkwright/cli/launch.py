@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-a",
         "--show-all-subprocesses-output",
         action="store_true",
-        help="show the output of all processes on the screen, whatever the launch file sets",
+        help="show the output of all processes on the screen, even if the launch file sets another destination",
     )
     parser.add_argument(
         "--launch-prefix", metavar="COMMAND", help="prefix the command lines of processes with this command"

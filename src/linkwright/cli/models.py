@@ -81,7 +81,7 @@ def run_get(arguments: argparse.Namespace) -> int:
         if not _verification_problems(entry, path):
             print(path)
             return FINE
-        print_message(localized(phrase("'{path}' is incomplete or modified, and is downloaded again", path=path)))
+        print_message(localized(phrase("'{path}' is incomplete or modified, so it is downloaded again", path=path)))
     print_message(
         localized(
             phrase(

@@ -39,7 +39,7 @@ def multicast_group(text: str) -> str:
     return text
 
 
-def port(text: str) -> int:
+def parse_port(text: str) -> int:
     """Parse a UDP port.
 
     Raises:
@@ -78,7 +78,9 @@ def _configure_receive(parser: argparse.ArgumentParser) -> None:
         default=multicast.DEFAULT_GROUP,
         help="the multicast group (default: %(default)s)",
     )
-    parser.add_argument("--port", type=port, default=multicast.DEFAULT_PORT, help="the UDP port (default: %(default)s)")
+    parser.add_argument(
+        "--port", type=parse_port, default=multicast.DEFAULT_PORT, help="the UDP port (default: %(default)s)"
+    )
 
 
 def _configure_send(parser: argparse.ArgumentParser) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_DISCOVERY_TIMEOUT = 1.0
+_DISCOVERY_TIMEOUT_S = 1.0
 """Seconds to wait for a node that has not been discovered."""
 
 
@@ -59,7 +59,7 @@ def run_info(arguments: argparse.Namespace) -> int:
     hidden = arguments.include_hidden
 
     async def job(session: Session) -> int:
-        await session.wait_until(lambda: full_name in node_names(session, hidden=hidden), _DISCOVERY_TIMEOUT)
+        await session.wait_until(lambda: full_name in node_names(session, hidden=hidden), _DISCOVERY_TIMEOUT_S)
         names = node_names(session, hidden=hidden)
         count = names.count(full_name)
         if not count:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _MIN_SIDE, _MAX_SIDE, _MAX_PIXELS = 16, 16384, 25_000_000
 _MAX_ANIMATED_PIXELS = 400_000_000
 _MIN_SECONDS, _MAX_SECONDS = 0.5, 60.0
-_USUAL_SECONDS = 4
+_USUAL_DURATION_S = 4
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +67,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--turntable",
         type=_seconds,
         nargs="?",
-        const=_USUAL_SECONDS,
+        const=_USUAL_DURATION_S,
         metavar="SECONDS",
         help="write an animation of one turn, as APNG or WebP (default duration: %(const)s s)",
     )
@@ -93,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 1
     print_diagnostics(scene.problems, sys.stderr)
     if not len(scene.mesh.faces):
-        message = phrase("'{file}' has nothing to draw: no visual of it can be drawn", file=arguments.file)
+        message = phrase("'{file}' has nothing to draw: none of its visuals can be drawn", file=arguments.file)
         raise LinkwrightError(Diagnostic("PIC110", message, hint=phrase("add a <visual> to a link")))
     style = _style(arguments, scene)
     if arguments.turntable is None:
@@ -134,7 +134,7 @@ def _read_world(arguments: argparse.Namespace, path: Path, finder: PackageFinder
     from linkwright.sdf.resources import ResourceFinder
 
     if arguments.joint:
-        message = phrase("'{file}' is a world, whose joints cannot be moved by --joint", file=arguments.file)
+        message = phrase("'{file}' is a world, but --joint moves only the joints of a robot", file=arguments.file)
         raise LinkwrightError(
             Diagnostic("PIC111", message, hint=phrase("pass a URDF or xacro file, or leave out --joint"))
         )

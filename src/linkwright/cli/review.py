@@ -78,8 +78,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action="append",
         default=[],
-        help="run this scenario of `linkwright sweep` in both versions, and compare its results and the paths "
-        "of its robots; the code of both runs",
+        help="run this scenario of `linkwright sweep` in both versions, which executes their "
+        "code, and compare the results and the paths of the robots",
     )
     parser.add_argument(
         "--seeds", metavar="N", type=positive_int, help="the number of seeds of scenarios (default: their own)"

@@ -166,7 +166,7 @@ def run_call(arguments: argparse.Namespace) -> int:
 
 
 def _check_type(session: Session, name: str, requested_type: str) -> None:
-    """Check that a service, if it exists, has the type that the user gave.
+    """Check that an existing service has the type that the user gave.
 
     Without this check, the command would wait for a service that never appears.
 

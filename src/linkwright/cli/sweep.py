@@ -30,14 +30,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a Python file with a function decorated with @scenario(...)")
     add_values(
         parser,
-        values_help="values of a parameter, separated by commas, which replace those in the file",
+        values_help="values of a parameter, separated by commas, which replace its values in the file",
         metavar="NAME:=VALUES",
     )
     parser.add_argument(
         "--seeds",
         metavar="N",
         type=positive_int,
-        help="the number of seeds, starting at 0, which replace those in the file",
+        help="the number of seeds, which start at 0 and replace the seeds in the file",
     )
     parser.add_argument(
         "--workers",

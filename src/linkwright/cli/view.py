@@ -41,30 +41,35 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_viewer_options(parser)
 
 
-def add_viewer_options(parser: argparse.ArgumentParser, *, terminal: bool = True) -> None:
+def add_viewer_options(parser: argparse.ArgumentParser, *, offers_terminal: bool = True) -> None:
     """Declare the options of the page, which several commands share.
 
     Args:
         parser: the command's parser.
-        terminal: whether the terminal is an option, because the command does not need it.
+        offers_terminal: whether to declare --terminal; False for commands that always have a terminal.
     """
     group = parser.add_argument_group(title="page in the browser")
     group.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
     group.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
-    group.add_argument("--port", type=port, help="port to serve the page at (default: 7448, or the next free one)")
     group.add_argument(
-        "--foxglove", metavar="PORT", type=port, help="let Foxglove and Lichtblick connect to this port of this machine"
+        "--port", type=parse_port, help="port to serve the page at (default: 7448, or the next free one)"
+    )
+    group.add_argument(
+        "--foxglove",
+        metavar="PORT",
+        type=parse_port,
+        help="let Foxglove and Lichtblick connect to this port of this machine",
     )
     group.add_argument(
         "--history",
         metavar="SIZE",
-        type=size,
+        type=parse_size,
         default=DEFAULT_HISTORY,
         help="memory for the messages of the last minutes, which the page can replay, such as 1GB; 0 "
         "disables replay (default: 256MB)",
     )
-    parser.set_defaults(needs_terminal=not terminal)
-    if terminal:
+    parser.set_defaults(needs_terminal=not offers_terminal)
+    if offers_terminal:
         group.add_argument(
             "--terminal",
             action="store_true",
@@ -80,7 +85,7 @@ def terminal_folder(arguments: argparse.Namespace) -> Path | None:
 _UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9}
 
 
-def size(text: str) -> int:
+def parse_size(text: str) -> int:
     """Parse a size such as ``256MB``, and return the number of bytes.
 
     Raises:
@@ -92,7 +97,7 @@ def size(text: str) -> int:
     return round(float(match[1]) * _UNITS[(match[2] or "").upper()])
 
 
-def port(text: str) -> int:
+def parse_port(text: str) -> int:
     """Parse a TCP port.
 
     Raises:
@@ -123,10 +128,10 @@ def run(arguments: argparse.Namespace) -> int:
         return _view_recordings(arguments, options)
     bag = next((word for word in arguments.words if names_file(word) and is_recording(Path(word))), None)
     if bag is not None:
-        return _report_misuse(f"'{bag}' is a recording, which is shown by itself: linkwright view {bag}")
+        return _report_misuse(f"'{bag}' is a recording, so show it without other files: linkwright view {bag}")
     if arguments.against or any(map(names_file, arguments.words)):
         if rviz is not None:
-            return _report_misuse("leave -d out: a comparison of two descriptions has its own displays")
+            return _report_misuse("omit -d: a comparison of two descriptions has its own displays")
         return _view_comparison(arguments, options)
     values = parse_assignments(arguments.words)
     from linkwright.hosting.view import run_view
@@ -144,7 +149,7 @@ def _view_recordings(arguments: argparse.Namespace, options: HostOptions) -> int
     extra_arguments = [*other_arguments, *([f"--against {arguments.against}"] if arguments.against else [])]
     if extra_arguments:
         return _report_misuse(
-            f"'{arguments.file}' is a recording, which is shown by itself: leave {', '.join(extra_arguments)} out"
+            f"'{arguments.file}' is a recording, so show it by itself: omit {', '.join(extra_arguments)}"
         )
     folder = next((file for file in files if len(files) > 1 and file.is_dir()), None)
     if folder is not None:

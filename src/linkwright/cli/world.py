@@ -22,7 +22,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the worlds that can be opened, and the models that can be included by name."""
+    """Print the worlds and models that can be used by name."""
     from linkwright.packages import PackageFinder
     from linkwright.sdf.resources import ResourceFinder
 

@@ -80,8 +80,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="LEVEL",
         type=int,
         dest="verbosity",
-        help="0: only errors, 1: also warnings (default), 2: the same, 3: also log where the properties of the "
-        "document are set and used, 4: also those of macros and namespaces",
+        help="0: only errors, 1: also warnings (default), 2: the same, 3: also log where the "
+        "properties of the document are set and used, 4: also log this for the properties of "
+        "macros and namespaces",
     )
     parser.set_defaults(**_DEFAULTS)
 

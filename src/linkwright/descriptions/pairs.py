@@ -83,7 +83,7 @@ class Model:
         return self.finder.resolve(uri, self.path.parent)
 
     def normalizer(self, other: Model) -> Callable[[str], str]:
-        """Return a function that makes texts of this description comparable with those of another.
+        """Return a function that makes this description's texts comparable with another description's.
 
         Paths in the folder of a commit are then equal to those in the working tree.
         """
@@ -92,7 +92,7 @@ class Model:
         return other.commit.normalizer_for(self.finder) if other.commit is not None else str
 
     def _relabel(self, diagnostic: Diagnostic) -> Diagnostic:
-        """Return a finding in which files of a commit have the names that git uses."""
+        """Return a finding with git's names for the files of a commit."""
         if self.commit is None:
             return diagnostic
         notes = tuple(note._replace(span=self._span(note.span)) for note in diagnostic.notes)

@@ -90,11 +90,11 @@ class CommitFiles:
 
     @property
     def normalize(self) -> Callable[[str], str]:
-        """A function that makes paths of the commit comparable with those of another commit or the working tree."""
+        """A function that makes the commit's paths comparable with another commit's or the working tree's."""
         return _path_normalizer(self.packages, self.root)
 
     def normalizer_for(self, finder: PackageFinder) -> Callable[[str], str]:
-        """Return a function that makes paths of the working tree comparable with those of this commit.
+        """Return a function that makes the working tree's paths comparable with this commit's.
 
         Args:
             finder: the finder of the working tree's packages.

@@ -1,4 +1,4 @@
-"""Characters that look like those of code.
+"""Characters that look like ASCII characters of code.
 
 They are full-width punctuation and digits, curved quotes, dashes and signs.
 """

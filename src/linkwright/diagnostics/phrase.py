@@ -75,7 +75,7 @@ class Phrase(str):
         return self._fill(wording.gettext(self.template), wording) if self.template else ""
 
     def with_arguments(self, **arguments: object) -> Phrase:
-        """Return the phrase with other values for those of the arguments that it has."""
+        """Return the phrase with new values; values for unknown arguments are ignored."""
         changes = {name: value for name, value in arguments.items() if name in self.arguments}
         result: Phrase = type(self)(self.template, {**self.arguments, **changes}, *self.__reduce__()[1][2:])
         return result

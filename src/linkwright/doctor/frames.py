@@ -344,7 +344,7 @@ def _examine_fixed_frames(observation: Observation, robots: Sequence[ObservedRob
         known_note = (
             phrase("known frames: {known}", known=listed(sorted(known_frames)))
             if known_frames
-            else phrase("there are no frames at all")
+            else phrase("there are no frames")
         )
         suggestion = did_you_mean(frame.name, known_frames)
         yield Diagnostic(
@@ -373,7 +373,7 @@ def _examine_message_frames(observation: Observation, robots: Sequence[ObservedR
             yield Diagnostic(
                 "DOC310",
                 phrase(
-                    "'{topic}' of {sender} is in frame '{frame}', which does not exist",
+                    "{sender} publishes '{topic}' in frame '{frame}', which does not exist",
                     topic=frame.topic,
                     sender=listed([frame.sender]),
                     frame=frame.frame,

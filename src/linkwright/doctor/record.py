@@ -185,12 +185,12 @@ class Observation:
 
 
 def node_of(endpoint: EndpointInfo) -> str:
-    """Return the full name of the node to which an endpoint belongs."""
+    """Return the full name of an endpoint's node."""
     return UNKNOWN_NODE if endpoint.node is None else join(endpoint.node.namespace, endpoint.node.name)
 
 
 def nodes_of(endpoints: Iterable[EndpointInfo]) -> list[str]:
-    """Return the sorted full names of the nodes to which endpoints belong, without duplicates."""
+    """Return the sorted full names of the nodes of endpoints, without duplicates."""
     return sorted({node_of(endpoint) for endpoint in endpoints})
 
 

@@ -196,7 +196,7 @@ def _qos_hint(policy: QoSPolicyKind) -> Phrase:
             "make the publisher transient local, or the subscription volatile (in RViz: the display's "
             "Durability Policy)"
         )
-    return phrase("let the publisher offer more, or the subscription request less")
+    return phrase("let the publisher offer a stricter policy, or the subscription request a weaker one")
 
 
 def _policy_text(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
@@ -273,7 +273,7 @@ def _examine_misnamed_topics(observation: Observation) -> Iterator[Diagnostic]:
 
 
 def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
-    """Yield findings about velocity commands to which no node subscribes."""
+    """Yield findings about velocity commands that no node receives."""
     subscribed_topics = {endpoint.name for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)}
     misnamed_topics = {similar_topic for _, _, _, similar_topic in _find_misnamed_topics(observation)}
     command_topics = {
@@ -330,7 +330,7 @@ def _examine_drivers(observation: Observation) -> Iterator[Diagnostic]:
 
 
 def _find_similar(name: str, candidates: list[str]) -> str | None:
-    """Return the candidate for which a name was probably intended, or None.
+    """Return the candidate that a misspelled name probably means, or None.
 
     A candidate is suitable if only its namespace differs, or if its spelling is similar.
     """

@@ -59,19 +59,19 @@ _DISCOVERY_VARIABLES = (
     "ZENOH_CONFIG_OVERRIDE",
     "ZENOH_SESSION_CONFIG_URI",
 )
-_RESPONSE_TIMEOUT_SECONDS = 1.0
+_RESPONSE_TIMEOUT_S = 1.0
 """The maximum seconds to wait for a node's response.
 
 A node that does not respond is skipped.
 """
-_NAMING_TIMEOUT_SECONDS = 1.0
+_NAMING_TIMEOUT_S = 1.0
 """The maximum seconds to wait for the nodes of endpoints.
 
 The endpoints of some programs never have a node.
 """
 _FIXED_FRAME = "fixed_frame"
-_POLL_SECONDS = 0.01
-_TRANSFORMS_WITHIN = 5.0
+_POLL_S = 0.01
+_TRANSFORMS_TIMEOUT_S = 5.0
 """The maximum additional seconds to wait while published transforms were not received."""
 
 _MIN_QUATERNION_NORM = 1e-3
@@ -84,7 +84,7 @@ The byte order is the second byte of the CDR header.
 _CDR_HEADER = 4
 _TWIST_BYTES = 48
 """The size of the six numbers at the end of a Twist or TwistStamped."""
-_MIN_DISPUTE_SECONDS = 1.5
+_MIN_DISPUTE_S = 1.5
 """The seconds for which drivers must contradict each other.
 
 The time is short because observations are short.
@@ -114,9 +114,9 @@ async def observe(
     while True:
         watcher.subscribe()
         remaining_seconds = end - time.monotonic()
-        if remaining_seconds <= (-_TRANSFORMS_WITHIN if watcher.waits_for_transforms() else 0):
+        if remaining_seconds <= (-_TRANSFORMS_TIMEOUT_S if watcher.waits_for_transforms() else 0):
             break
-        await asyncio.sleep(min(remaining_seconds, 0.25) if remaining_seconds > 0 else _POLL_SECONDS)
+        await asyncio.sleep(min(remaining_seconds, 0.25) if remaining_seconds > 0 else _POLL_S)
     sim_time, lifecycle, viewer_frames = await asyncio.gather(
         watcher.sim_time(), watcher.lifecycle(), watcher.fixed_frames()
     )
@@ -183,11 +183,11 @@ class _Watcher:
         A node is discovered shortly after its endpoints. Before that, the endpoints of another command would be
         mistaken for a part of the graph.
         """
-        end = time.monotonic() + _NAMING_TIMEOUT_SECONDS
+        end = time.monotonic() + _NAMING_TIMEOUT_S
         while time.monotonic() < end:
             if all(endpoint.node is not None for endpoint in self._graph.endpoints()):
                 break
-            await asyncio.sleep(_POLL_SECONDS)
+            await asyncio.sleep(_POLL_S)
 
     def waits_for_transforms(self) -> bool:
         """Return whether a topic with a publisher of transforms has not delivered any transform yet.
@@ -310,7 +310,7 @@ class _Watcher:
         )
 
     def _on_velocity(self, topic: str, data: bytes, info: MessageInfo) -> None:
-        dispute = self._disputes.setdefault(topic, DisputeDetector(_MIN_DISPUTE_SECONDS, _MIN_DISPUTE_COUNT))
+        dispute = self._disputes.setdefault(topic, DisputeDetector(_MIN_DISPUTE_S, _MIN_DISPUTE_COUNT))
         dispute.record_command(info.publisher_gid, bytes(data[-_TWIST_BYTES:]), time.monotonic())
 
     def _on_stamped(self, topic: str, data: bytes, info: MessageInfo, *, is_velocity: bool) -> None:
@@ -436,7 +436,7 @@ class _Watcher:
         futures = {node: client.call_async(request) for node, client in clients.items()}
         tasks = {node: asyncio.ensure_future(_await_result(future)) for node, future in futures.items()}
         if tasks:
-            await asyncio.wait(tasks.values(), timeout=_RESPONSE_TIMEOUT_SECONDS)
+            await asyncio.wait(tasks.values(), timeout=_RESPONSE_TIMEOUT_S)
         for node, client in clients.items():
             tasks[node].cancel()
             client.remove_pending_request(futures[node])

@@ -21,7 +21,7 @@ if sys.platform != "win32":
     import fcntl
 
 _PREFIX = "linkwright_"
-_MIN_AGE_SECONDS = 60.0
+_MIN_AGE_S = 60.0
 """The age in seconds above which an empty folder without a lock is abandoned.
 
 The process that creates a younger folder may not have locked it yet.
@@ -73,7 +73,7 @@ def _remove_if_abandoned(entry: os.DirEntry[str]) -> None:
         return
     try:
         age_seconds = time.time() - entry.stat(follow_symlinks=False).st_mtime
-        if age_seconds > _MIN_AGE_SECONDS or any(Path(entry.path).iterdir()):
+        if age_seconds > _MIN_AGE_S or any(Path(entry.path).iterdir()):
             shutil.rmtree(entry.path, ignore_errors=True)
     finally:
         os.close(lock)

@@ -1,4 +1,4 @@
-"""YAML files of the user as nodes with locations, for findings about mistakes in them."""
+"""The user's YAML files as nodes with locations, for findings about errors in them."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class MassProperties:
         return self.with_scaled_density(mass / self.mass)
 
     def moved(self, pose: Pose) -> MassProperties:
-        """Return the mass properties in a parent frame, in which the body's frame has a pose."""
+        """Return the mass properties in a parent frame, given the body's pose in it."""
         rotation = np.array(rotation_of(pose))
         center = rotation @ self.center + np.asarray(pose.xyz)
         return MassProperties(self.mass, center, rotation @ self.inertia @ rotation.T)

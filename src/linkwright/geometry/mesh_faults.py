@@ -152,7 +152,7 @@ def _collada_faults(data: bytes) -> Iterator[Phrase]:
     if not any(element.tag == "geometry" for element in elements):
         yield phrase("it has no <geometry>")
     if not any(element.tag == "instance_geometry" for element in elements):
-        yield phrase("none of its <node> elements shows a geometry: there is no <instance_geometry>")
+        yield phrase("none of its <node> elements has an <instance_geometry>, so there is nothing to draw")
 
 
 def _element_faults(element: Element, ids: set[str]) -> Iterator[Phrase]:
@@ -280,7 +280,7 @@ def _reference_faults(document: dict[str, Any]) -> Iterator[Phrase]:
         for name, values in (("componentType", _COMPONENT_SIZES), ("type", _COMPONENT_COUNTS)):
             if accessor.get(name) not in values:
                 yield phrase(
-                    "{entry}.{name} is {value}, which glTF does not have",
+                    "{entry}.{name} is {value}, which glTF does not define",
                     entry=location,
                     name=name,
                     value=str(accessor.get(name)),

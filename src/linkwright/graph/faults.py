@@ -1,4 +1,4 @@
-"""The exceptions of the graph, modeled on those of rclpy."""
+"""The exceptions of the graph, modeled on rclpy's."""
 
 from __future__ import annotations
 

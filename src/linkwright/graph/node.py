@@ -409,7 +409,7 @@ class Node(NodeParameters, NodeQueries):
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:
-        """The node's publishers, except those of ``/rosout`` and of service events, as in rclpy."""
+        """The node's publishers without ``/rosout`` and service events, as in rclpy."""
         return (
             publisher
             for publisher in self.__handle.parts(Publisher)

@@ -72,7 +72,7 @@ class SimulatedTime:
 
 
 class _ClockSubscription(Subscription[Any]):
-    """A subscription that sets a clock from ``/clock``, in the thread in which messages arrive."""
+    """A subscription that sets a clock from ``/clock``, in the thread that receives the messages."""
 
     def __init__(self, node: NodeHandle, clock: ROSClock) -> None:
         super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name(CLOCK_TOPIC), CLOCK_QOS, self._move)

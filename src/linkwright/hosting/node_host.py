@@ -422,7 +422,7 @@ class NodeHost:
             self._current_process = previous_process
 
     def _find_process(self, logger: str) -> str:
-        """Return the name of the process to which a logger belongs.
+        """Return the name of a logger's process.
 
         The process is found by the name of the logger, of its ancestors, or of the node that created it.
         """

@@ -160,7 +160,7 @@ class HostOptions:
 
 
 class Supervisor(Protocol):
-    """The interface through which a host calls the run that owns it: a launch, or a viewer of one description."""
+    """The callbacks from a host to the run that owns it: a launch, or a viewer of one description."""
 
     @property
     def finder(self) -> PackageFinder:

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from linkwright.graph import Node
     from linkwright.nodes.watched_files import ReadWorld
 
-_RETRY_SECONDS = 0.06
+_RETRY_S = 0.06
 """The delay before a failure is reported, because an editor may still be writing the file."""
 _MISSING_ATTEMPTS = 8
 """The number of attempts to read a missing file, because some editors delete a file before they write it."""
-_CATCH_UP_SECONDS = 0.4
+_CATCH_UP_S = 0.4
 """The delay after which files are checked once for changes that were made before the watch began."""
 
 _STEP_MS = 20
@@ -143,7 +143,7 @@ class LiveReload:
         if self._watch is None:
             self._watch = FileWatch(self._on_change, self._on_watch_failure)
         if self._watch.watch({file for call in self._callbacks for file in self._files_of_interest(call)}):
-            asyncio.get_running_loop().call_later(_CATCH_UP_SECONDS, self._reload_missed)
+            asyncio.get_running_loop().call_later(_CATCH_UP_S, self._reload_missed)
 
     def _on_watch_failure(self, reason: str) -> None:
         self._log.write_warning("launch", f"model files are not watched for changes: {reason}")
@@ -226,7 +226,7 @@ class LiveReload:
             all_exist = all(path.is_file() for path in self._files_of_interest(call))
             if attempt > 0 and all_exist:
                 break
-            await asyncio.sleep(_RETRY_SECONDS)
+            await asyncio.sleep(_RETRY_S)
             if call in self._pending_reloads:
                 return  # A newer change has already started another reload.
         if call not in self._callbacks:

@@ -27,12 +27,12 @@ from linkwright.process.interruption import on_lost_interrupt, signal_again
 
 T = TypeVar("T")
 
-_DEADLINE_SECONDS = 1.9
+_DEADLINE_S = 1.9
 """The seconds after a signal until the program ends, even if it hangs.
 
 Recordings are completed before. After the first signal, a responsive event loop adds the time that processes may take
 to end."""
-_SAME_KEYPRESS_SECONDS = 0.3
+_SAME_KEYPRESS_S = 0.3
 """Signals within these seconds count as one, because a wrapper may forward the Ctrl-C of a terminal."""
 
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -131,12 +131,12 @@ class SignalWatch:
         now = time.monotonic()
         session, ends_now = self.session, False
         if self.received is not None:
-            if now - self._last_signal_time <= _SAME_KEYPRESS_SECONDS:
+            if now - self._last_signal_time <= _SAME_KEYPRESS_S:
                 return
             ends_now = self._is_hurried or session is None or session.loop is None
             self._is_hurried = True
         self.received, self._last_signal_time = self.received or signal_number, now
-        self._end_after(0.0 if ends_now else _DEADLINE_SECONDS)
+        self._end_after(0.0 if ends_now else _DEADLINE_S)
         if ends_now or self._is_creating_loop:
             return
         if session is None or session.loop is None:
@@ -152,7 +152,7 @@ class SignalWatch:
         This is called when the event loop is responsive.
         """
         if not self._is_hurried:
-            self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
+            self._end_after(_DEADLINE_S + session.seconds_to_end())
 
     def _end_after(self, seconds: float) -> None:
         if self._deadline is not None:

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from linkwright.viewer import Viewer
     from linkwright.viewer.guests import GuestRecordings
 
-_CLOSE_TIMEOUT_SECONDS = 0.8
+_CLOSE_TIMEOUT_S = 0.8
 
-_RECONNECT_TIMEOUT_SECONDS = 2.5
+_RECONNECT_TIMEOUT_S = 2.5
 """The seconds to wait for the pages of a previous run.
 
 This is longer than the interval at which the pages try to reconnect.
 """
 
-_POLL_SECONDS = 0.1
+_POLL_S = 0.1
 
 
 class ViewerHost:
@@ -179,10 +179,10 @@ class ViewerHost:
 
     async def _open_unless_reconnected(self, viewer: Viewer) -> None:
         """Open the page in a browser, unless a page of the previous run reconnects."""
-        for _ in range(round(_RECONNECT_TIMEOUT_SECONDS / _POLL_SECONDS)):
+        for _ in range(round(_RECONNECT_TIMEOUT_S / _POLL_S)):
             if self._session.is_ending or len(viewer.audience) > 0:
                 return
-            await asyncio.sleep(_POLL_SECONDS)
+            await asyncio.sleep(_POLL_S)
         _open_in_browser(viewer.url)
 
     def _port_for(self, plan: HostedPlan) -> int | None:
@@ -220,7 +220,7 @@ class ViewerHost:
         """
         self._session.log.write_diagnostics(viewer.keep_unsaved())
         try:
-            await asyncio.wait_for(viewer.close(), _CLOSE_TIMEOUT_SECONDS)
+            await asyncio.wait_for(viewer.close(), _CLOSE_TIMEOUT_S)
         except asyncio.TimeoutError:
             self._session.log.write_warning(plan.process_name, "a browser did not close its connection in time")
 

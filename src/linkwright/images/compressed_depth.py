@@ -44,8 +44,9 @@ def decode_depth(message: Any) -> RawImage:
     if packing is None or encoding not in (*_INTEGER_ENCODINGS, _FLOAT_ENCODING):
         raise BadImageError(
             phrase(
-                "The format of the depth image is '{format}'; supported are 16UC1, mono16 and 32FC1, each with "
-                "'compressedDepth png' or 'compressedDepth rvl'",
+                "The format of the depth image is '{format}', but only 16UC1, mono16 and "
+                "32FC1 are supported, each with 'compressedDepth png' or 'compressedDepth "
+                "rvl'",
                 format=message.format,
             )
         )

@@ -334,7 +334,7 @@ _YUV_CONVERTERS: dict[str, Callable[[Any], Pixels]] = {
 
 
 def packed_to_rgb(pairs: Pixels, layout: str) -> Pixels:
-    """Convert an image in which pairs of pixels share their chroma to RGB.
+    """Convert an image with shared chroma for each pair of pixels to RGB.
 
     Args:
         pairs: shape (height, width, 2): luma and one chroma value of each pixel, alternately for blue and red.
@@ -352,7 +352,7 @@ def packed_to_rgb(pairs: Pixels, layout: str) -> Pixels:
 
 
 def planar_to_rgb(luma: Pixels, chroma: Pixels, layout: str) -> Pixels:
-    """Convert an image in which the chroma follows the luma to RGB.
+    """Convert an image with the chroma after the luma to RGB.
 
     Args:
         luma: shape (height, width).

@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, mi
 from linkwright.geometry.arrays import Array
 from linkwright.images.elevation import read_elevation
 
-_MAX_ROWS = 1025
+_MAX_SIDE = 1025
 """The maximum number of heights along a side. Of a larger image, only every n-th row and column is used."""
 
 
@@ -32,7 +32,7 @@ def read_heights(path: Path) -> Heights:
     In an image of floating-point numbers, such as an elevation model, 0 is the lowest point and 1 the highest.
 
     Raises:
-        LinkwrightError: SIM113 the image cannot be read; SIM114 Pillow is not installed.
+        LinkwrightError: SIM113, the image cannot be read; SIM114 Pillow is not installed.
     """
     try:
         from PIL import Image, UnidentifiedImageError
@@ -51,7 +51,7 @@ def read_heights(path: Path) -> Heights:
         except (OSError, ValueError):
             message = phrase("cannot read the image '{path}': {reason}", path=display_path(path), reason=str(error))
             raise LinkwrightError(Diagnostic("SIM113", message)) from None
-    stride = -(-max(values.shape) // _MAX_ROWS)
+    stride = -(-max(values.shape) // _MAX_SIDE)
     values = values[::-stride, ::stride]
     if mode == "F":
         minimum, maximum = float(np.nanmin(values)), float(np.nanmax(values))

@@ -13,7 +13,7 @@ Attributes = tuple[tuple[str, str], ...]
 
 
 def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], ...]:
-    """Return the children of an ``<inertial>`` with their attributes, in the order in which they are written.
+    """Return the children of an ``<inertial>`` with their attributes, in document order.
 
     The axes are the link's axes. Numbers have six significant digits: the rounding is far smaller than the
     uncertainty of the shape, and keeps a valid tensor valid.

@@ -1,4 +1,4 @@
-"""The mesh files of a description, each of which is located and read once."""
+"""The mesh files of a description; each is located and read once."""
 
 from __future__ import annotations
 

@@ -35,8 +35,8 @@ _GRADE_NAMES = {
 """The first words of verdicts that require a change."""
 
 _BASIS_PHRASES = {
-    "mass": phrase("mass as given"),
-    "present": phrase("mass as in the file"),
+    "mass": phrase("requested mass"),
+    "present": phrase("mass in the file"),
     "density": phrase("mass from density"),
 }
 

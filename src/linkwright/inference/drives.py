@@ -124,7 +124,7 @@ def _unknown_kind_reason(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> 
     if steered_pairs:
         return phrase("there are steered wheels, but no other pair of wheels that could be driven")
     if fixed_pairs:
-        return phrase("there are pairs of wheels of different sizes, one of which may only support the robot")
+        return phrase("its pairs of wheels differ in size, so one of them may only support the robot")
     return phrase("there is no pair of wheels, one on the left and one on the right")
 
 

@@ -163,7 +163,7 @@ class _InferenceBuilder:
         if drive.kind != "joints":
             yield from self._reversed_axes(drive)
             message = phrase(
-                "the inferred drive of '{robot}' is of the kind '{kind}': {reason}",
+                "the inferred drive of '{robot}' is '{kind}': {reason}",
                 robot=self._robot.name,
                 kind=drive.kind,
                 reason=self._verdict.reason,

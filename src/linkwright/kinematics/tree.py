@@ -269,7 +269,7 @@ class _Level:
 
 
 def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
-    """Return the steps in which frames are composed along doubling paths.
+    """Return the steps that compose frames along doubling paths.
 
     Each step consists of the first body that is deep enough, and the ancestors of this and all later bodies. The
     ancestors are 1, 2, 4, ... bodies up, excluding the root's body, whose frame is the identity.

@@ -210,7 +210,7 @@ def extract_property(
             error = error or reason
         else:
             return edits
-    raise error or UnprovedError(phrase("there is no position for the definition of '{name}'", name=name))
+    raise error or UnprovedError(phrase("there is no place to define '{name}'", name=name))
 
 
 def _quote(content: str, quote: str) -> str:

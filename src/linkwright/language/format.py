@@ -15,7 +15,7 @@ from linkwright.packages import PackageFinder
 
 
 class NotYetKnownError(Exception):
-    """Raised if a function needs an expansion or a search for which it may not wait."""
+    """Raised if a function would have to wait for an expansion or a search."""
 
 
 @dataclass(frozen=True, slots=True)

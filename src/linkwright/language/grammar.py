@@ -40,7 +40,7 @@ XACRO = {
             "arg",
             "a value that the caller sets, as in xacro FILE NAME:=VALUE",
             AttributeRule("name", _NAMES, "the name in $(arg NAME)", required=True),
-            AttributeRule("default", _TEXT, "the value if the caller gives none", usually_written=True),
+            AttributeRule("default", _TEXT, "the value if the caller passes none", usually_written=True),
         ),
         _tag(
             "include",

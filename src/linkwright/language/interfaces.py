@@ -168,7 +168,7 @@ def _primitive_description(name: str) -> str:
     if primitive.is_integer:
         text = phrase("`{name}`: an integer from {low} to {high}", name=name, low=primitive.low, high=primitive.high)
     elif primitive.python is float:
-        text = phrase("`{name}`: a number with {bits} bits", name=name, bits=primitive.size * 8)
+        text = phrase("`{name}`: a floating-point number with {bits} bits", name=name, bits=primitive.size * 8)
     else:
         return f"`{name}`: {primitive.idl_name}"
     return localized(text)

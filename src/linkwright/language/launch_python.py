@@ -133,9 +133,9 @@ class PythonLaunchText:
             name = self.paths.text_of(group.argument("name", 0)) or ""
             choices = self._choices(group) or likely_values(None, name, self.document.text)
             return _StringMeaning("choice", text, base=self.paths.before(text, item), choices=choices)
-        of_node = self._meaning_in_node(text, item)
-        if of_node is not None:
-            return of_node
+        node_meaning = self._meaning_in_node(text, item)
+        if node_meaning is not None:
+            return node_meaning
         included = self._included_arguments(text, item)
         if included is not None:
             return included
@@ -188,14 +188,14 @@ class PythonLaunchText:
         return NodeProgram(self.paths.text_of(package) or "", self.paths.text_of(executable) or "")
 
     def parameters(self, meaning: _StringMeaning) -> list[ParameterInfo]:
-        """Return the parameters that the nodes to which a string belongs may have."""
+        """Return the parameters of the nodes that a string configures."""
         parameters: dict[str, ParameterInfo] = {}
         for program in meaning.programs:
             names = (node_name(*program), program.executable)
-            node_parameters_ = next(
+            known_parameters = next(
                 (found_parameters for name in names if (found_parameters := node_parameters(name))), ()
             )
-            for parameter in node_parameters_ or parameters_in_sources(self.document, program):
+            for parameter in known_parameters or parameters_in_sources(self.document, program):
                 parameters.setdefault(parameter.name, parameter)
         parameters.setdefault("use_sim_time", ParameterInfo("use_sim_time", "bool", False))
         return list(parameters.values())
@@ -212,7 +212,7 @@ class PythonLaunchText:
         choices = call.argument("choices")
         part = choices.parts[0] if choices is not None and choices.parts else None
         inner = part.items if isinstance(part, Group) else []
-        return tuple(text_part.value for item in inner for text_part in item.parts[:1] if isinstance(text_part, Text))
+        return tuple(part_text.value for item in inner for part_text in item.parts[:1] if isinstance(part_text, Text))
 
     def _included_arguments(self, text: Text, item: Item) -> _StringMeaning | None:
         """Return the meaning of a key or value in the launch arguments of an include, or None."""

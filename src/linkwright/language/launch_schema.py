@@ -66,7 +66,7 @@ _PROCESS = (
     _one("emulate_tty", _TRUTH, "whether the process has a terminal", "false"),
     _one("sigterm_timeout", _NUMBER, "the time from SIGINT to SIGTERM", "5", "s"),
     _one("sigkill_timeout", _NUMBER, "the time from SIGTERM to SIGKILL", "5", "s"),
-    _one("on_exit", ValueType("shutdown"), "the reaction to the end of the process"),
+    _one("on_exit", ValueType("shutdown"), "the actions that run when the process ends"),
     _one("log_cmd", _TRUTH, "whether the log shows the command", "false"),
     _one("cached_output", _TRUTH, "whether the output is kept for tests", "false"),
     _one("split_arguments", _TRUTH, "whether arguments are split at spaces after substitution", "false"),
@@ -130,7 +130,7 @@ _PLAIN = (
         "an argument of the launch file, which its caller can set",
         _required("name", _NAME, "the name in $(var NAME)"),
         _usually_written(
-            "default", _TEXT, "the value if the caller gives none; without a default the argument is required"
+            "default", _TEXT, "the value if the caller passes none; without a default, the argument is required"
         ),
         _usually_written("description", _TEXT, "a description for --show-args"),
         children=(_element("choice", "an allowed value", _required("value", _TEXT, "the value")),),
@@ -226,8 +226,8 @@ _PLAIN = (
     ),
     _action("rep_env", "replaces all environment variables", children=(_ENV,)),
     _action("push_env", "saves the environment variables"),
-    _action("pop_env", "restores the environment variables that push_env has saved"),
-    _action("reset_env", "restores the environment variables of the start"),
+    _action("pop_env", "restores the environment variables that push_env saved"),
+    _action("reset_env", "restores the environment variables that the launch started with"),
     _action("unset", "removes a launch configuration", _required("name", _NAME, "the name in $(var NAME)")),
     _action(
         "reset",
@@ -239,7 +239,7 @@ _PLAIN = (
         "an argument of the launch file that is true or false",
         _required("name", _NAME, "the name in $(var NAME)"),
         _usually_written(
-            "default", _TRUTH, "the value if the caller gives none; without a default the argument is required"
+            "default", _TRUTH, "the value if the caller passes none; without a default, the argument is required"
         ),
         _usually_written("description", _TEXT, "a description for --show-args"),
     ),
@@ -254,7 +254,7 @@ _PLAIN = (
         for level in ("info", "debug", "warning", "error")
     ),
     _action("ready_to_test", "signals to launch_testing that tests may start"),
-    _action("shutdown", "ends the launch", _one("reason", _TEXT, "the reason for the log", "no reason given")),
+    _action("shutdown", "ends the launch", _one("reason", _TEXT, "the reason to write to the log", "no reason given")),
     _action(
         "set_ros_log_dir",
         "changes the log folder of later processes",
@@ -292,7 +292,7 @@ _PLAIN = (
         _one("namespace", _NAME, "the namespace of the node"),
         _one("log_level", ValueType("level of a log"), "the level", "info"),
         _one("use_respawn", _TRUTH, "whether the process is started again when it ends", "false"),
-        _one("bridge_params", _TEXT, "further parameters of the node"),
+        _one("bridge_params", _TEXT, "additional parameters of the node"),
         *_GZ_CONTAINER,
         children=(_PARAM,),
     ),
@@ -323,8 +323,10 @@ def _containers(inner: tuple[ElementRule, ...]) -> tuple[ElementRule, ...]:
             children=(*inner, _pair("keep", "a launch configuration of the group")),
             is_recursive=True,
         ),
-        _action("timer", "executes actions after a time", *period, children=inner),
-        _action("ros_timer", "executes actions after a time of ROS, which may be simulated", *period, children=inner),
+        _action("timer", "executes actions after a delay", *period, children=inner),
+        _action(
+            "ros_timer", "executes actions after a delay in ROS time, which may be simulated", *period, children=inner
+        ),
         _action(
             "for_each",
             "repeats actions for each entry of a list; $(for-var NAME) is its value",

@@ -104,7 +104,7 @@ def extract_macro(
             error = error or reason
         else:
             return edits
-    raise error or UnprovedError(phrase("there is no position for the definition of '{name}'", name=name))
+    raise error or UnprovedError(phrase("there is no place to define '{name}'", name=name))
 
 
 def _merge(first: Edit, second: Edit) -> tuple[Edit, ...]:

@@ -83,7 +83,7 @@ PACKAGE = ElementRule(
         ),
         _value(
             "author",
-            "a person who wrote the package",
+            "an author of the package",
             AttributeRule("email", ValueType("address"), "the e-mail address"),
             is_repeated=True,
         ),
@@ -99,7 +99,7 @@ PACKAGE = ElementRule(
             _value(tag, meaning, *_VERSIONS, _CONDITION, kind=_PACKAGE, is_repeated=True)
             for tag, meaning in _MEANINGS.items()
         ),
-        _value("group_depend", "a group all of whose packages are needed", _CONDITION, is_repeated=True),
+        _value("group_depend", "a group whose packages are all needed", _CONDITION, is_repeated=True),
         _value("member_of_group", "a group that the package belongs to", _CONDITION, is_repeated=True),
         _value(
             "conflict", "a package that cannot be installed with this one", *_VERSIONS, kind=_PACKAGE, is_repeated=True

@@ -116,7 +116,7 @@ class NameSources:
         self._tags = {file: [*_start_tags(project.text(file, texts) or "")] for file in files}
 
     def edits(self, source: SourceValue, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
-        """Yield proposals of edits that give a text a new value, the likeliest first.
+        """Yield proposals of edits that give a text a new value, the most likely first.
 
         Args:
             source: the text.

@@ -145,7 +145,7 @@ def _mentions(text: str, file: Path, names: Names, old_names: frozenset[str]) ->
 
 
 def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
-    """Return the descriptions to which a configuration or launch file may refer.
+    """Return the descriptions that a configuration or launch file may refer to.
 
     These are the robots of its package, or else the robots with parts in the package, or else the robots of the
     package's dependencies, or else all. Several robots are reduced to those that some file mentions together with this
@@ -165,7 +165,7 @@ def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) ->
 
 
 def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> dict[Path, list[Path]]:
-    """Return the descriptions to which a package may refer, with their files in the package."""
+    """Return the descriptions that a package may refer to, with their files in the package."""
     entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_DESCRIPTION_SUFFIXES)]
     entries = [entry for entry in entries if ".srdf" not in entry.name and not entry.name.startswith(".")]
     own_entries = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}

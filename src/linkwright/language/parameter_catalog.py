@@ -138,7 +138,7 @@ def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
 
 @cache
 def plugins() -> Mapping[str, Plugin]:
-    """Return the plugins by type, in which ``/`` replaces ``::``."""
+    """Return the plugins by type, with ``/`` in place of ``::``."""
     return {
         kind.replace("::", "/"): Plugin(
             kind, entry["node"], entry["listed"], entry["purpose"], _infos(entry["parameters"], kind)

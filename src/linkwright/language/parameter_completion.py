@@ -44,7 +44,7 @@ _COSTMAPS = ("local_costmap", "global_costmap")
 
 
 def complete_parameters(document: Document, offset: int) -> list[Completion]:
-    """Return the completions at an offset of a parameter file, the likeliest first."""
+    """Return the completions at an offset of a parameter file, the most likely first."""
     outline = YamlOutline(document.text)
     cursor = outline.cursor(offset)
     if cursor.position is YamlPosition.NOTHING:

@@ -28,9 +28,9 @@ INTERFACES = ("position", "velocity", "effort", "acceleration")
 _USUAL_FRAMES = ("map", "odom", "base_link", "base_footprint")
 """Frames of mobile platforms (REP 105)."""
 _INTERFACE = re.compile(r"(^|_)(command_|state_)?interfaces?(_names?)?$")
-_CAPITALS = re.compile(r":[ \t]+(?:True|False)\b")
-_SMALL = re.compile(r":[ \t]+(?:true|false)\b")
-_COLONS = re.compile(r"plugin:[ \t]+[\"']?nav2_(?!costmap_2d)\w+::|plugin:[ \t]+[\"']?dwb_core::")
+_CAPITALIZED_BOOLEAN = re.compile(r":[ \t]+(?:True|False)\b")
+_LOWERCASE_BOOLEAN = re.compile(r":[ \t]+(?:true|false)\b")
+_CPP_PLUGIN_NAME = re.compile(r"plugin:[ \t]+[\"']?nav2_(?!costmap_2d)\w+::|plugin:[ \t]+[\"']?dwb_core::")
 _SENSOR_TOPICS = ("/scan", "/points")
 
 
@@ -51,37 +51,37 @@ def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
 
 
 def parameter_values(document: Document, section: Section, cursor: YamlCursor) -> Iterator[Completion]:
-    """Yield the values that a parameter may have, the likeliest first."""
+    """Yield the values that a parameter may have, the most likely first."""
     name = section.prefix
     last = name.rpartition(".")[2]
     parameter = section.find(name)
-    is_array = parameter is not None and parameter.type.endswith("_array") and not cursor.is_in_list
+    needs_brackets = parameter is not None and parameter.type.endswith("_array") and not cursor.is_in_list
 
     def item(label: str, kind: ItemKind = ItemKind.VALUE, detail: str = "", description: str = "") -> Completion:
-        snippet = f"[{snippet_text(label)}$0]" if is_array and not label.startswith("[") else ""
+        snippet = f"[{snippet_text(label)}$0]" if needs_brackets and not label.startswith("[") else ""
         return Completion(label, kind, cursor.start, detail, description, snippet)
 
     present = {text for text, start in cursor.parent_entry.items() if start != cursor.start}
     if last == "type" and (section.is_manager or (section.may_be_controller and name == "type")):
-        for kind in _sort_by_resemblance(controller_types(), name.rpartition(".")[0] or section.node):
-            yield item(kind, description=controller_purpose(kind) or "")
+        for type_name in _sort_by_resemblance(controller_types(), name.rpartition(".")[0] or section.node):
+            yield item(type_name, description=controller_purpose(type_name) or "")
     elif last in ("plugin", "primary_controller"):
-        uses_colons = _COLONS.search(document.text) is not None
-        for kind in _plugin_types(section, name.rpartition(".")[0], last):
-            yield item(kind.replace("/", "::") if uses_colons else kind)
+        uses_colons = _CPP_PLUGIN_NAME.search(document.text) is not None
+        for type_name in _plugin_types(section, name.rpartition(".")[0], last):
+            yield item(type_name.replace("/", "::") if uses_colons else type_name)
     elif _is_boolean(document, section, name):
-        counts = [len(pattern.findall(document.text)) for pattern in (_SMALL, _CAPITALS)]
+        counts = [len(pattern.findall(document.text)) for pattern in (_LOWERCASE_BOOLEAN, _CAPITALIZED_BOOLEAN)]
         is_capital = cursor.typed[:1].isupper() if cursor.typed else counts[1] > counts[0]
         for word in ("true", "false"):
             mark = "" if parameter is None else _default_mark(parameter, word)
             yield item(word.title() if is_capital else word, detail=mark)
     elif parameter is not None and parameter.choices:
-        for word in parameter.choices:
-            yield item(word, detail=_default_mark(parameter, word))
+        for choice in parameter.choices:
+            yield item(choice, detail=_default_mark(parameter, choice))
     elif _INTERFACE.search(last):
-        for word in INTERFACES:
-            if word not in present:
-                yield item(word)
+        for interface in INTERFACES:
+            if interface not in present:
+                yield item(interface)
     elif any(plugin.list_parameter == last for plugin in plugins().values()):
         for entry in section.entry.children:
             if entry.child("plugin") is not None and entry.key not in present:

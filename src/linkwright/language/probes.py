@@ -20,7 +20,7 @@ _VALUES = ("probe", "1", "0")
 
 
 def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
-    """Return whether an expansion contains the element to which a name belongs.
+    """Return whether an expansion contains the element with a name.
 
     If the element belongs to xacro, any element of its macro counts. Outside macros, the result is then True.
 

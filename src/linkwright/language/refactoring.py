@@ -134,7 +134,7 @@ def refactor(
 
 
 _Selection = tuple[int, int]
-_DOES_NOT_FIT = phrase("this refactoring does not fit the selection")
+_DOES_NOT_FIT = phrase("this refactoring is not available for the selection")
 
 
 def _extract_property(

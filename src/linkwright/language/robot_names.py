@@ -28,7 +28,7 @@ _MAX_ROBOTS = 24
 _MAX_STORED = 4 * _MAX_ROBOTS
 _MAX_ENTRIES = 6
 _MAX_ARGUMENT_SETS = 4
-_MAX_SECONDS = 0.5
+_MAX_DURATION_S = 0.5
 _KINDS = {"link": NameKind.LINK, "joint": NameKind.JOINT}
 _State = tuple[tuple[str, object], ...]
 """The files of an expansion, each with the hash of its open text or the time of its last change."""
@@ -47,7 +47,7 @@ _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
 
 
 def robot_names(document: Document) -> list[NameDefinition]:
-    """Return the links and joints of the robots to which a file probably refers, likeliest first.
+    """Return the links and joints of the robots that a file probably refers to, the most likely first.
 
     Names with expressions are expanded, and located at the attribute with the expressions. A description that cannot
     be expanded provides its earlier names, the names in its valid parts, or the names without expressions.
@@ -61,7 +61,7 @@ def robot_names(document: Document) -> list[NameDefinition]:
     robots: list[_Robot] = []
     begin = time.monotonic()
     for entry in _list_likely_robots(document):
-        if time.monotonic() - begin > _MAX_SECONDS:
+        if time.monotonic() - begin > _MAX_DURATION_S:
             break  # The next request continues the expansion.
         robot = _find_robot(document, entry)
         if robot is not None:

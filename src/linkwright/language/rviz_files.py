@@ -65,7 +65,7 @@ _TOPIC = re.compile(r"(?m)^[ \t]{0,99}(?:Value|Topic|[\w ]{0,60}Topic): (/[\w/]+
 
 
 def complete_rviz(document: Document, offset: int) -> list[Completion]:
-    """Return the completions at an offset of a configuration, the likeliest first."""
+    """Return the completions at an offset of a configuration, the most likely first."""
     cursor = YamlOutline(document.text).cursor(offset)
     if cursor.position is YamlPosition.NOTHING:
         return []

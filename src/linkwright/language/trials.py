@@ -32,7 +32,7 @@ _PLACEHOLDERS = ("value", "1")
 _MAX_GAPS = 60
 _MAX_WITH_GAPS = 3
 _MAX_SWITCHED = 10
-_MAX_SECONDS = 2.0
+_MAX_DURATION_S = 2.0
 """The time after which no further arguments are switched."""
 _OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True", "0": "1", "1": "0"}
 
@@ -183,7 +183,7 @@ def _generate_trials_with_other_values(
     for name, value in _list_other_values(project, texts, base.entry):
         if base.arguments.get(name) == value:
             continue
-        if time.monotonic() - begin > _MAX_SECONDS:
+        if time.monotonic() - begin > _MAX_DURATION_S:
             return
         arguments = {**base.arguments, name: value}
         try:

@@ -19,7 +19,7 @@ from linkwright.xacro.macros import Parameter
 
 
 def complete(document: Document, offset: int, names: Sequence[NameDefinition] = ()) -> list[Completion]:
-    """Return the completions at an offset, the likeliest first, each label once.
+    """Return the completions at an offset, the most likely first, each label once.
 
     Args:
         document: the text. The name of its file determines the language.

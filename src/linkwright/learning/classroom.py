@@ -314,7 +314,7 @@ def open_classroom(workspace: Path, course: str | None = None) -> Classroom:
             folder=display_path(workspace),
             course=progress.course,
         )
-        hint = phrase("name another folder, or rename its {file}", file=PROGRESS_FILE)
+        hint = phrase("pass another folder, or rename its {file}", file=PROGRESS_FILE)
         raise LinkwrightError(Diagnostic("LEARN114", message, hint=hint))
     return Classroom(workspace, loaded, progress or Progress(known_name, {}))
 

@@ -243,7 +243,7 @@ def find_course(name: str) -> Path:
             phrase("there is no course '{name}'", name=name),
             hint=did_you_mean(name, names)
             or phrase(
-                "name a folder with a {file}, or one of the shipped courses: {names}",
+                "pass a folder with a {file}, or the name of a shipped course: {names}",
                 file=COURSE_FILE,
                 names=quoted_names(names),
             ),
@@ -293,7 +293,7 @@ def load_lesson(folder: Path) -> Lesson:
 def _read_points(path: Path, data: Mapping[str, object]) -> dict[str, float]:
     points = data.get("points", {})
     if not isinstance(points, dict) or not all(_is_number_of_points(value) for value in points.values()):
-        raise file_error("LEARN104", path, phrase("'points' must have a number from 0 on for each step that it names"))
+        raise file_error("LEARN104", path, phrase("'points' must give each step a number of at least 0"))
     return points
 
 

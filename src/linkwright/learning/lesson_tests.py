@@ -62,7 +62,7 @@ def right(step: str, title: str, *changes: Edit | Mapping[str, str | None], answ
 def wrong(
     step: str, title: str, *changes: Edit | Mapping[str, str | None], says: str, answer: str | None = None
 ) -> Case:
-    """Return a test case with a wrong solution, for which a check's message must contain `says`. See `Case`."""
+    """Return a test case with a wrong solution; a check's message must contain `says`. See `Case`."""
     return Case(step, title, changes, says, answer)
 
 

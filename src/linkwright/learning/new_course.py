@@ -22,7 +22,7 @@ def create_course(folder: Path) -> list[Path]:
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         message = phrase("'{folder}' exists and is not an empty folder", folder=display_path(folder))
-        raise LinkwrightError(Diagnostic("LEARN115", message, hint=phrase("name a new folder")))
+        raise LinkwrightError(Diagnostic("LEARN115", message, hint=phrase("pass a new folder")))
     try:
         shutil.copytree(find_course(EXAMPLE), folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     except (OSError, shutil.Error) as error:

@@ -1,4 +1,4 @@
-"""The search for the files that changed files can affect, based on the file names in texts.
+"""Find the files that a change can affect, by the file names in their texts.
 
 A description can include a file under a name that only its expansion knows. Therefore, the search looks for the names
 of files in the texts of a version, without expanding anything, and follows a name with a computed part to all files
@@ -29,11 +29,11 @@ _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|%[sd]|\{[\w.\[\]'\"]*\}")
 _WORD = re.compile(r"model://[\w.+-]+|[\w.+*-]+")
 _MODEL = "model://"
 _MODEL_CONFIG = "model.config"
-"""The name of a file that names files of its own folder."""
+"""The file of a model folder that names only files of this folder."""
 _MIN_FIXED_CHARACTERS = 3
 """The number of fixed characters besides the suffix that a computed name must have to be followed."""
 _BUILD_FILES = frozenset({"package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml"})
-"""The names of files that tools for building read, and no description."""
+"""The names of build files, which no description reads."""
 _OTHER_SUFFIXES = (".md", ".rst", ".cpp", ".hpp", ".cc", ".h", ".msg", ".srv", ".action", ".repos", ".sh")
 """The endings of other files that no description reads."""
 
@@ -68,13 +68,13 @@ class TextFiles:
         affected = set(pending)
         while pending:
             path = pending.pop()
-            for other in self._naming(path):
-                if other not in affected:
-                    affected.add(other)
-                    pending.append(other)
+            for referrer in self._find_referrers(path):
+                if referrer not in affected:
+                    affected.add(referrer)
+                    pending.append(referrer)
         return affected & set(candidates)
 
-    def _naming(self, path: str) -> Iterator[str]:
+    def _find_referrers(self, path: str) -> Iterator[str]:
         """Yield the paths of the files whose texts can name a file."""
         name = Path(path).name
         for file in self._files_by_name.get(name, ()):
@@ -103,7 +103,7 @@ class TextFiles:
         names: dict[str, frozenset[str]] = {}
         for path, file in self._walk_files():
             is_known = path in known and path not in self._changed
-            names[path] = known[path] if is_known else frozenset(_find_file_names(_text(file)))
+            names[path] = known[path] if is_known else frozenset(_find_file_names(_read_beginning(file)))
         return names
 
     @property
@@ -127,7 +127,7 @@ class TextFiles:
                     yield file.relative_to(self._root).as_posix(), file
 
 
-def _text(file: Path) -> str:
+def _read_beginning(file: Path) -> str:
     """Return the beginning of a file."""
     with file.open("rb") as stream:
         size = _MAX_MESH_BYTES if file.name.endswith(_MESH_SUFFIXES) else _MAX_TEXT_BYTES

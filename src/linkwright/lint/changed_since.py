@@ -93,7 +93,7 @@ class WorkingTreeChanges:
         )
 
 
-_HINT = phrase("leave out `--changed`; outside a repository, `--baseline` hides the findings that are known")
+_HINT = phrase("leave out `--changed`; outside a repository, `--baseline` hides known findings")
 
 
 def _relative(path: Path, root: Path) -> str:

@@ -43,7 +43,7 @@ class UniqueFindings:
                 self._findings[key] = without_element(diagnostic)
 
     def all(self) -> list[Diagnostic]:
-        """Return the findings in the order in which they were added."""
+        """Return the findings in the order of their addition."""
         return list(self._findings.values())
 
 
@@ -103,7 +103,7 @@ class Checker:
         return settings.with_command_line(select, tuple(map(canonical, self.ignore))), settings_findings
 
     def for_folders(self, folders: Sequence[Path]) -> Checker:
-        """Return a checker with the same settings for other folders, such as those of another version."""
+        """Return a checker with the same settings for other folders, such as another version's."""
         return Checker(self.values, self.select, self.ignore, self.config, tuple(folders))
 
     def check(

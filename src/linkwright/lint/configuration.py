@@ -300,7 +300,7 @@ def _is_scalar(value: object) -> bool:
 
 
 def _as_argument(value: str | float) -> str:
-    """Return a TOML value in the form in which it is written on a command line."""
+    """Return a TOML value as a user writes it on a command line."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

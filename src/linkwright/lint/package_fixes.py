@@ -196,7 +196,7 @@ def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | No
 
 
 def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
-    """Return the name by which ``setup.py`` can call ``glob``, and the edit that imports it.
+    """Return the name of ``glob`` in ``setup.py``, and the edit that imports it.
 
     The edit is empty if the import exists. The name is None if there is no position for the import.
     """

@@ -83,7 +83,7 @@ def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targe
 
 
 def included_robots(folder: Path) -> list[Path]:
-    """Return the xacro files in and below a folder that describe a complete robot and that other files include."""
+    """Return the xacro files in and below a folder that are both complete robots and included by others."""
     files, packages = walk(folder, (_XACRO,))
     entries = set(_entries(files, packages))
     return [path for path in files if path not in entries and _describes_robot(path)]

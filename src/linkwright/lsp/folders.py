@@ -13,7 +13,7 @@ from pygls.lsp.server import LanguageServer
 from linkwright.diagnostics import Phrase
 from linkwright.diagnostics.translation import localized
 
-_PROGRESS_AFTER = 0.5
+_PROGRESS_DELAY_S = 0.5
 """The time in seconds after which an editor shows progress. Shorter work would only flicker."""
 
 WATCHED_FILES = (
@@ -32,7 +32,7 @@ async def show_progress(server: LanguageServer, title: Phrase, work: asyncio.Fut
         title: the title of the indicator.
         work: the future of the work, which this function also waits for.
     """
-    await asyncio.wait([work], timeout=_PROGRESS_AFTER)
+    await asyncio.wait([work], timeout=_PROGRESS_DELAY_S)
     window = server.client_capabilities.window
     if work.done() or window is None or not window.work_done_progress:
         return

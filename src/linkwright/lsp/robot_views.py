@@ -25,7 +25,7 @@ _LOADED_FILES = (".yaml", ".yml")
 
 
 class TextEditor(Protocol):
-    """The editor to which a page reports selected elements and edits."""
+    """The editor that receives selected elements and edits from a page."""
 
     def show_location(self, file: Path, line: int, column: int) -> None:
         """Show the source of the element that the user has selected in a page.
@@ -37,7 +37,7 @@ class TextEditor(Protocol):
         """
 
     def replace_text(self, file: Path, version: int, text: str) -> None:
-        """Replace the text of a file in which the user has edited the robot in a page.
+        """Replace the text of a file after the user has edited the robot in a page.
 
         Args:
             file: the file.

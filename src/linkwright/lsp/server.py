@@ -45,9 +45,9 @@ _MAX_TEXTS = 200
 """The maximum number of saved texts that are stored, for the positions of findings."""
 _CACHE_DIVISOR = 8
 _CHECKS_PER_COLLECTION = 50
-_PAUSE_SECONDS = 0.3
+_PAUSE_S = 0.3
 """The time without a change of a large file after which a process checks the file."""
-_IDLE_SECONDS = 1.0
+_IDLE_S = 1.0
 """The time without a change after which the server collects garbage."""
 
 
@@ -220,7 +220,7 @@ class LinkwrightServer(LanguageServer):
         """
         current = self.positions(path)
         if current is None or current.text != positions.text:
-            message = localized(phrase("a text has changed in the meantime"))
+            message = localized(phrase("a file has changed in the meantime"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
     @property
@@ -320,9 +320,9 @@ class LinkwrightServer(LanguageServer):
                 check_count += 1
 
     async def _is_idle(self) -> bool:
-        """Return whether no file changes within `_IDLE_SECONDS`."""
+        """Return whether no file changes within `_IDLE_S`."""
         try:
-            await asyncio.wait_for(self._has_changes.wait(), _IDLE_SECONDS)
+            await asyncio.wait_for(self._has_changes.wait(), _IDLE_S)
         except asyncio.TimeoutError:
             return True
         return False
@@ -345,7 +345,7 @@ class LinkwrightServer(LanguageServer):
         self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
     ) -> None:
         """Check one subject in a separate process, and publish its findings."""
-        await asyncio.sleep(_PAUSE_SECONDS)
+        await asyncio.sleep(_PAUSE_S)
         findings = await findings_of_process(project.folders, subject, texts)
         if self._large_checks.get(subject) is asyncio.current_task():
             del self._large_checks[subject]

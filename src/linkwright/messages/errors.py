@@ -10,7 +10,7 @@ class InterfaceNotFoundError(LinkwrightError):
 
 
 class DefinitionError(LinkwrightError):
-    """Raised when an interface file has mistakes, with one finding for each."""
+    """Raised when an interface file has errors, with one finding for each."""
 
 
 class MessageDataError(LinkwrightError, ValueError):

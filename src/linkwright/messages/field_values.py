@@ -58,7 +58,7 @@ class _InvalidValueError(Exception):
 
 
 class _Setter:
-    """A setter of fields from plain data that collects all mistakes."""
+    """A setter of fields from plain data that collects all errors."""
 
     def __init__(self, *, expand_header: bool, expand_time: bool) -> None:
         self._expand_header = expand_header

@@ -19,7 +19,7 @@ Progress = Callable[[int, int | None], None]
 """A callback for the number of received bytes, and the total or None if the server does not report it."""
 
 _BLOCK_BYTES = 1 << 16
-_TIMEOUT_SECONDS = 60.0
+_TIMEOUT_S = 60.0
 _MAX_FAILED_TRIES = 3
 """The maximum number of consecutive broken connections without a new byte."""
 
@@ -77,7 +77,7 @@ def _fetch_rest(entry: ModelEntry, address: str, part_file: Path, progress: Prog
     request = urllib.request.Request(address, headers={"User-Agent": f"linkwright/{__version__}"})  # noqa: S310 - http and https only, see `installing`
     if received:
         request.add_header("Range", f"bytes={received}-")
-    with urllib.request.urlopen(request, timeout=_TIMEOUT_SECONDS) as response:  # noqa: S310 - as above
+    with urllib.request.urlopen(request, timeout=_TIMEOUT_S) as response:  # noqa: S310 - as above
         if response.status != _PARTIAL:
             received = 0
         length = response.headers.get("Content-Length")

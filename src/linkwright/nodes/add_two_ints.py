@@ -13,7 +13,7 @@ from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 _TYPE = "example_interfaces/srv/AddTwoInts"
-_WAIT_SECONDS = 1.0
+_WAIT_S = 1.0
 
 
 class AddTwoIntsServer(SingleNode):
@@ -50,7 +50,7 @@ class AddTwoIntsClient(SingleNode):
             self._client.call_async(request).add_done_callback(self._log_result)
             return
         self._ticks += 1
-        if self._ticks * 0.05 >= _WAIT_SECONDS:
+        if self._ticks * 0.05 >= _WAIT_S:
             self._ticks = 0
             self._node.get_logger().info("service not available, waiting again...")
 

@@ -9,7 +9,7 @@ from linkwright.graph import Graph, QoSProfile
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
-_PERIOD_SECONDS = 1.0
+_PERIOD_S = 1.0
 _DEPTH = 7
 
 
@@ -23,7 +23,7 @@ class Talker(SingleNode):
         self._count = 0
         with handle_start_errors(self._node):
             self._publisher = self._node.create_publisher(String, "chatter", QoSProfile.of(_DEPTH))
-            self._node.create_timer(_PERIOD_SECONDS, self._talk)
+            self._node.create_timer(_PERIOD_S, self._talk)
 
     def _talk(self) -> None:
         self._count += 1

@@ -12,7 +12,7 @@ from linkwright.graph import SENSOR_DATA_QOS, Graph, QoSProfile
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
-_PERIOD_SECONDS = 1.0
+_PERIOD_S = 1.0
 _DEPTH = 10
 _UNLIMITED = 1 << 31
 
@@ -49,7 +49,7 @@ class TalkerQos(_CountingNode):
 
     def _begin(self, qos: QoSProfile) -> None:
         self._publisher = self._node.create_publisher(String, "chatter", qos)
-        self._node.create_timer(_PERIOD_SECONDS, self._talk)
+        self._node.create_timer(_PERIOD_S, self._talk)
 
     def _talk(self) -> None:
         text = f"Hello World: {self._count}"

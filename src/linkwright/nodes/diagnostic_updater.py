@@ -9,7 +9,7 @@ from enum import IntEnum
 from linkwright.graph import Node
 from linkwright.messages import get_message
 
-_PERIOD_SECONDS = 1.0
+_PERIOD_S = 1.0
 _DEPTH = 1
 
 
@@ -49,7 +49,7 @@ class DiagnosticUpdater:
         self._status = get_message("diagnostic_msgs/msg/DiagnosticStatus")
         self._key_value = get_message("diagnostic_msgs/msg/KeyValue")
         self._publisher = node.create_publisher(self._array, "/diagnostics", _DEPTH)
-        node.create_timer(_PERIOD_SECONDS, self._publish)
+        node.create_timer(_PERIOD_S, self._publish)
 
     def _publish(self) -> None:
         health = self._get_health()

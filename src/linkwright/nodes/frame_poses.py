@@ -7,7 +7,7 @@ from linkwright.graph import Node, TransformException
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 
-_WARNING_PERIOD_SECONDS = 5.0
+_WARNING_PERIOD_S = 5.0
 
 
 class FramePoses:
@@ -42,7 +42,5 @@ class FramePoses:
         try:
             return self.buffer.lookup(target, source, 0)[0]
         except TransformException as error:
-            self._node.get_logger().warning(
-                f"{self._warning_prefix} {error}", throttle_duration_sec=_WARNING_PERIOD_SECONDS
-            )
+            self._node.get_logger().warning(f"{self._warning_prefix} {error}", throttle_duration_sec=_WARNING_PERIOD_S)
             return None

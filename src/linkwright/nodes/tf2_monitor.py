@@ -16,7 +16,7 @@ AUTHORITY = "<no authority available>"
 USAGE = "TF_Monitor: usage: tf2_monitor framea frameb"
 
 _MAX_DELAYS = 1000
-_UPDATE_PERIOD_SECONDS = 0.5
+_UPDATE_PERIOD_S = 0.5
 _UPDATES_PER_REPORT = 21
 _FILTER_WEIGHT = 0.01
 """The weight of a new delay in the average."""
@@ -56,7 +56,7 @@ class Tf2Monitor(SingleNode):
         )
         if self._frames is not None:
             self._output(f"Waiting for transform chain to become available between {' and '.join(self._frames)} ")
-        self._node.create_timer(_UPDATE_PERIOD_SECONDS, self._measure_and_print)
+        self._node.create_timer(_UPDATE_PERIOD_S, self._measure_and_print)
 
     def _receive(self, message: TFMessage, *, static: bool) -> None:
         now_ns = self._clock.now().nanoseconds

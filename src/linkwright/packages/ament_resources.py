@@ -26,7 +26,7 @@ class InvalidResourceNameError(Exception):
 
 
 def get_search_paths() -> list[str]:
-    """Return the prefixes in which resources are searched, in order.
+    """Return the prefixes to search for resources, in order.
 
     Raises:
         LookupError: there are no such prefixes.

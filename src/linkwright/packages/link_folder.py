@@ -15,7 +15,7 @@ from linkwright.files.user_folders import SHARES_SUBFOLDER, cache_folder
 from linkwright.packages.readers.installed import InstalledFile
 
 _MAX_LINKS = 5000
-_RETENTION_SECONDS = 7 * 24 * 3600.0
+_RETENTION_S = 7 * 24 * 3600.0
 """Seconds before an unused layout is deleted. Until then, a running program may still use it."""
 
 
@@ -78,5 +78,5 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
 def _delete_old_layouts(layouts: Path) -> None:
     for layout in layouts.iterdir():
         with suppress(OSError):
-            if time.time() - layout.stat().st_mtime > _RETENTION_SECONDS:
+            if time.time() - layout.stat().st_mtime > _RETENTION_S:
                 shutil.rmtree(layout, ignore_errors=True)

@@ -376,7 +376,7 @@ def is_local_connection(transport: BaseTransport | None) -> bool:
 
 
 def endpoints_of(transport: BaseTransport | None) -> tuple[Endpoint, Endpoint] | None:
-    """Return the address and port of the peer, and those of this program, or None if unknown."""
+    """Return the addresses and ports of the peer and of this program, or None if unknown."""
     if transport is None:
         return None
     peer, own_address = (transport.get_extra_info(name) for name in ("peername", "sockname"))

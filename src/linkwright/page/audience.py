@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from linkwright.page.protocol.voice import SoundBlock
 
 
-_MEASURE_PERIOD = 0.05
+_MEASURE_PERIOD_S = 0.05
 """Seconds between two measurements of the lag."""
 
 _MEASUREMENT_COUNT = 20
@@ -58,7 +58,7 @@ class LoopLag:
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
         self._lags: deque[float] = deque(maxlen=_MEASUREMENT_COUNT)
-        self._due_time = self._loop.time() + _MEASURE_PERIOD
+        self._due_time = self._loop.time() + _MEASURE_PERIOD_S
         self._timer = self._loop.call_at(self._due_time, self._measure)
 
     @property
@@ -73,7 +73,7 @@ class LoopLag:
     def _measure(self) -> None:
         now = self._loop.time()
         self._lags.append(now - self._due_time)
-        self._due_time = now + _MEASURE_PERIOD
+        self._due_time = now + _MEASURE_PERIOD_S
         self._timer = self._loop.call_at(self._due_time, self._measure)
 
 

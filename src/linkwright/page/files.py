@@ -267,7 +267,7 @@ def _is_in_package(path: Path, name: str | None) -> bool:
     return package is not None and package[0] == name
 
 
-_OFFER_SECONDS = 60.0
+_OFFER_S = 60.0
 _MAX_OFFERED = 4
 
 
@@ -315,6 +315,6 @@ class Downloads:
         Files that were offered more than a minute ago are discarded first.
         """
         now = time.monotonic()
-        for old in [expired_key for expired_key, file in self._files.items() if now - file.created_at > _OFFER_SECONDS]:
+        for old in [expired_key for expired_key, file in self._files.items() if now - file.created_at > _OFFER_S]:
             del self._files[old]
         return self._files.pop(key, None)

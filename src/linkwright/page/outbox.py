@@ -246,7 +246,7 @@ class ConnectionMeter:
 
     @property
     def room(self) -> int:
-        """The size in bytes to which large content should be reduced."""
+        """The target size of large content, in bytes."""
         return _INITIAL_BUDGET if self.rate is None else max(_MIN_BUDGET, int(self.rate * _MAX_BUSY_TIME))
 
     @property

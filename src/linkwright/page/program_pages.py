@@ -33,7 +33,7 @@ _PAGE_ADDRESS = re.compile(r"http://(127\.0\.0\.1|localhost):\d{1,5}/\?token=[\w
 _SERVER_ADDRESS = re.compile(rf"http://(127\.0\.0\.1|localhost|\[::1\]):\d{{1,5}}{PROGRAM_PAGES_PATH}[\w-]+")
 _MAX_TITLE_LENGTH = 200
 _PAUSE, _RESUME, _PAUSED = b"pause\n", b"resume\n", b"paused\n"
-_TIMEOUT = 3.0
+_TIMEOUT_S = 3.0
 """Seconds to wait for a program's address, and for the server's answer to it."""
 
 
@@ -88,7 +88,7 @@ class ProgramPages:
         return {PROGRAM_PAGES_VARIABLE: f"{origin}{PROGRAM_PAGES_PATH}{self._key}"}
 
     def is_key(self, key: str) -> bool:
-        """Return whether a key is that of the address in `variables`."""
+        """Return whether a key matches the address in `variables`."""
         return hmac.compare_digest(key.encode(errors="replace"), self._key.encode())
 
     async def receive(self, request: web.Request) -> web.StreamResponse:
@@ -144,7 +144,7 @@ class ProgramPages:
     async def _read_page(self, request: web.Request) -> ProgramPage | None:
         """Return the page in the first line of a request, or None if the line is not valid."""
         try:
-            content = json.loads(await asyncio.wait_for(request.content.readline(), _TIMEOUT))
+            content = json.loads(await asyncio.wait_for(request.content.readline(), _TIMEOUT_S))
             title, url = str(content["title"]), str(content["url"])
         except (asyncio.TimeoutError, ConnectionError, ValueError, TypeError, KeyError, RecursionError):
             return None
@@ -184,7 +184,7 @@ class Embedder:
             is not shown.
         """
         try:
-            return await asyncio.wait_for(self._show(url, title), _TIMEOUT)
+            return await asyncio.wait_for(self._show(url, title), _TIMEOUT_S)
         except (asyncio.TimeoutError, OSError, ValueError):
             return None
 

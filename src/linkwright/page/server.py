@@ -41,7 +41,7 @@ MAX_MESSAGE_SIZE = 1024 * 1024
 
 _OWN_CONFIGURATION_KEY = re.compile(r"[0-9A-Za-z-]{8,64}")
 _HEARTBEAT_PERIOD_S = 15.0
-_IDLE_TIMEOUT = 30.0
+_IDLE_TIMEOUT_S = 30.0
 """Seconds for which a connection may stay open without a request."""
 
 _FRAME_SOURCES = "http://127.0.0.1:* http://localhost:*"
@@ -58,7 +58,7 @@ _MIN_COMPRESSED_SIZE, _MAX_COMPRESSION_RATIO, _COMPRESSION_LEVEL = 4096, 0.9, 1
 levels take twice the time and save another tenth."""
 
 _NO_STORE = "no-store"
-_CLOSE_TIMEOUT = 0.5
+_CLOSE_TIMEOUT_S = 0.5
 """Seconds for a page to answer a closing handshake, and for a request to end."""
 
 _NOT_BUILT = """\
@@ -169,8 +169,8 @@ class WebServer:
             handle_signals=False,
             access_log=None,
             logger=SERVER_LOGGER,
-            shutdown_timeout=_CLOSE_TIMEOUT,
-            keepalive_timeout=_IDLE_TIMEOUT,
+            shutdown_timeout=_CLOSE_TIMEOUT_S,
+            keepalive_timeout=_IDLE_TIMEOUT_S,
         )
         try:
             await self._runner.setup()
@@ -392,7 +392,7 @@ class WebServer:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
             heartbeat=_HEARTBEAT_PERIOD_S,
-            timeout=_CLOSE_TIMEOUT,
+            timeout=_CLOSE_TIMEOUT_S,
             compress=False,
             max_msg_size=MAX_MESSAGE_SIZE,
             writer_limit=MAX_UNSENT_BYTES,

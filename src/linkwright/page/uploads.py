@@ -242,7 +242,7 @@ class Uploads:
             self._sweep_timer = asyncio.get_running_loop().call_later(IDLE_TIMEOUT_S / 4, self._cancel_stalled)
 
     def _cancel_stalled(self) -> None:
-        """Cancel the uploads for which no data has arrived for a while."""
+        """Cancel the uploads that have not received data for a while."""
         self._sweep_timer = None
         now = asyncio.get_running_loop().time()
         for key, upload in list(self._uploads.items()):

@@ -66,7 +66,7 @@ class FeatureHost(Protocol):
 
 
 class PageFeature:
-    """The base class of features, each of which handles some of the messages of pages.
+    """The base class of features. Each feature handles some of the messages of pages.
 
     A feature must use no resources while no page uses it. It subscribes when a page needs it, and unsubscribes in
     `remove_page`.

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from linkwright.graph.time.clock import JumpHandle
     from linkwright.panels.live_history import LiveHistory
 
-_REPORT_PERIOD = 1.0
+_REPORT_PERIOD_S = 1.0
 """Seconds between two reports of the progress to pages."""
 
 MIN_FREE_BYTES = 256_000_000
@@ -274,7 +274,7 @@ class RecordingFeature(PageFeature):
 
     def _schedule_publish(self) -> None:
         if self._timer is None:
-            self._timer = self._loop.call_later(_REPORT_PERIOD, self._check_and_publish)
+            self._timer = self._loop.call_later(_REPORT_PERIOD_S, self._check_and_publish)
 
     def _check_and_publish(self) -> None:
         self._timer = None

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from linkwright.rviz.visualization.manager import VisualizationManager
 
 
-_CLOCK_PERIOD = 0.1
+_CLOCK_PERIOD_S = 0.1
 """Seconds between two checks of clocks that pages cannot advance by themselves."""
 
 
@@ -163,7 +163,7 @@ class TimeFeature(PageFeature):
                 page.send(clock)
                 self._sent_clocks[page] = clock
         if must_repeat:
-            self._timer = self._loop.call_later(_CLOCK_PERIOD, self._tick)
+            self._timer = self._loop.call_later(_CLOCK_PERIOD_S, self._tick)
 
     def _clock(self, manager: VisualizationManager) -> Clock:
         elapsed_start, time_control = self._begin(manager), manager.time
@@ -182,13 +182,13 @@ def _state(manager: VisualizationManager) -> TimeState:
     return TimeState(time_control.paused, time_control.mode, time_control.source, list(time_control.sources))
 
 
-_PLAYHEAD_PERIOD = 0.1
+_PLAYHEAD_PERIOD_S = 0.1
 """Seconds between two positions that are sent to pages while a recording plays."""
 
 _COUNT_INTERVALS = 200
 """The number of equal intervals of a recording for which messages are counted."""
 
-_EXTENT_PERIOD = 1.0
+_EXTENT_PERIOD_S = 1.0
 """Seconds between two messages to pages about the extent of the live history."""
 
 _CAUGHT_UP_NS = 100_000_000
@@ -373,7 +373,7 @@ class TimelineFeature(PageFeature):
         if playback is not None:
             self.context.pages.publish(self._playhead(playback))
             if playback.playing:
-                self._timer = self._loop.call_later(_PLAYHEAD_PERIOD, self._on_change)
+                self._timer = self._loop.call_later(_PLAYHEAD_PERIOD_S, self._on_change)
 
     def _playhead(self, playback: Playback) -> Playhead:
         position = playback.position_ns / NANOSECONDS_PER_SECOND
@@ -393,7 +393,7 @@ class TimelineFeature(PageFeature):
 
     def _publish_extent_later(self) -> None:
         if self._publish_timer is None:
-            self._publish_timer = self._loop.call_later(_EXTENT_PERIOD, self._publish_extent)
+            self._publish_timer = self._loop.call_later(_EXTENT_PERIOD_S, self._publish_extent)
 
     def _publish_extent(self) -> None:
         """Send the extent of the history to pages.

@@ -1,4 +1,4 @@
-"""The contents of a scene: surfaces with materials, and the bodies to which they belong."""
+"""The contents of a scene: bodies, and their surfaces with materials."""
 
 from __future__ import annotations
 

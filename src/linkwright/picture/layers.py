@@ -64,12 +64,12 @@ class Mesh:
 
     @property
     def opaque(self) -> Indices:
-        """The indices of the opaque triangles, shape (n,), except those of ghosts."""
+        """The indices of the opaque triangles without ghosts, shape (n,)."""
         return self.selected([part.alpha >= OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property
     def transparent(self) -> Indices:
-        """The indices of the triangles with transparent materials, shape (n,), except those of ghosts."""
+        """The indices of the triangles with transparent materials, without ghosts, shape (n,)."""
         return self.selected([0.0 < part.alpha < OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property

@@ -197,7 +197,7 @@ def _import(name: str) -> None:
 
 
 def _inner_modules(package: str) -> Iterator[str]:
-    """Yield the modules in a package, and those of each inner package after its import."""
+    """Yield the modules in a package, and import inner packages to yield their modules."""
     for module in pkgutil.iter_modules(getattr(sys.modules.get(package), "__path__", ()), f"{package}."):
         if not module.name.endswith(".__main__"):
             yield module.name

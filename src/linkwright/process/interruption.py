@@ -33,7 +33,7 @@ INTERRUPTED = 130
 As in shells, it is 128 plus the number of SIGINT.
 """
 
-_DELAY_SECONDS = 0.01
+_DELAY_S = 0.01
 
 
 def end_on_interrupt() -> None:
@@ -69,7 +69,7 @@ def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
     previous_hook = sys.unraisablehook
 
     def deliver_later() -> None:
-        time.sleep(_DELAY_SECONDS)
+        time.sleep(_DELAY_S)
         deliver()
 
     def hook(unraisable: Any) -> None:

@@ -1,4 +1,4 @@
-"""A clock for timeouts that excludes the time in which the machine was busy."""
+"""A clock for timeouts that stops while the machine is busy."""
 
 from __future__ import annotations
 

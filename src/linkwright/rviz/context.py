@@ -21,7 +21,7 @@ from linkwright.rviz.frames.history import FrameHistory
 
 
 class PublishedTopics:
-    """The topics that the nodes of a graph publish, except those of the viewer's own node.
+    """The topics that the nodes of a graph publish, without the viewer's own.
 
     The lookup is cached, because each display without messages looks for publishers every second, and a configuration
     can have hundreds of displays.
@@ -82,7 +82,7 @@ class PublishedTopics:
         self._topics = {message: sorted(names) for message, names in topics.items()}
 
 
-_COLLECTION_SECONDS = 0.1
+_COLLECTION_S = 0.1
 """Seconds for which changes are collected before callbacks are called. A starting node creates dozens of endpoints."""
 
 
@@ -122,7 +122,7 @@ class GraphChanges:
 
     def _wait(self) -> None:
         if self._notify_timer is None and self._listeners:
-            self._notify_timer = self._loop.call_later(_COLLECTION_SECONDS, self._notify)
+            self._notify_timer = self._loop.call_later(_COLLECTION_S, self._notify)
 
     def _notify(self) -> None:
         self._notify_timer = None

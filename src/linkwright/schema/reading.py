@@ -206,7 +206,7 @@ class Report(Protocol):
         """Report that a required child is missing."""
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """Report that an element has none of the alternative children, one of which is required."""
+        """Report that an element has none of its alternative required children."""
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
         """Report a child that is not allowed in this version of the language."""

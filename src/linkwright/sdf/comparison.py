@@ -49,7 +49,7 @@ def _list_content(element: Element) -> tuple[object, ...]:
 
 
 def _folder(shape_element: Visual | Collision) -> Path | None:
-    """Return the folder to which the path of an element's mesh is relative, or None."""
+    """Return the base folder of the path of an element's mesh, or None."""
     shape, element = shape_element.geometry, shape_element.element
     if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:
         return None

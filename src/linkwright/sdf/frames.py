@@ -145,7 +145,7 @@ class Frames:
         return rotate(invert(self.pose(joint.name))[3:], owner_direction)
 
     def link(self, name: str) -> str:
-        """Return the name of the link to which a frame is attached.
+        """Return the name of the link that a frame is attached to.
 
         The name is relative to this model or world. For a frame that is fixed to the world, return ``world``.
 
@@ -190,7 +190,7 @@ class Frames:
         raise FrameError(MODEL)
 
     def _base(self, name: str) -> str:
-        """Return the name of the frame to which the pose of a frame is relative.
+        """Return the name of the reference frame of a frame's pose.
 
         Raises:
             FrameError: the frame does not exist.

@@ -141,7 +141,7 @@ def _direction_with_frame(axis: Vector3, expressed_in: str) -> tuple[Vector3, st
 
 
 def _limit(lower: float, upper: float, effort: float, velocity: float, **stop_parameters: float) -> AxisLimit:
-    """Return axis limits in which unlimited values are infinite.
+    """Return axis limits, with infinite numbers for unlimited values.
 
     Positions of at least 1e16, and negative efforts and velocities, mean that there is no limit.
     """

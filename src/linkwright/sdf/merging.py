@@ -71,7 +71,7 @@ def _with_attachment(nested_frame: Frame, frame: str) -> Frame:
 
 
 def _with_frame_references(joint: Joint, frame: str) -> Joint:
-    """Return a joint in which references to the model's frame refer to `frame` instead.
+    """Replace a joint's references to the model's frame by references to `frame`.
 
     A pose without such a reference remains relative to the joint's child.
     """

@@ -1,4 +1,4 @@
-"""The element ``<pose>``: a pose as written, with the frame to which it is relative."""
+"""The element ``<pose>``: a pose as written, with its reference frame."""
 
 from __future__ import annotations
 

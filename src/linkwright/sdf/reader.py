@@ -34,7 +34,7 @@ _SEPARATE_NAMESPACE_TAGS = ("visual", "collision", "sensor", "light")
 _OTHER_FORMATS = {
     "robot": phrase("a URDF file"),
     "mujoco": phrase("a MuJoCo model"),
-    "gazebo:world": phrase("a world of a Gazebo version before 1.0"),
+    "gazebo:world": phrase("a world for Gazebo before version 1.0"),
     "COLLADA": phrase("a COLLADA mesh"),
     "launch": phrase("a launch file"),
 }
@@ -143,7 +143,7 @@ def read(document: Document) -> Reading:
 
 
 def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
-    """Return the object that an element describes, and report all mistakes in the element.
+    """Return the object that an element describes, and report all errors in the element.
 
     The caller must first check the element with `is_too_deep`.
     """

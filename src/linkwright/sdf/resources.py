@@ -72,7 +72,7 @@ class Missing(NamedTuple):
 
 
 class ResourceFinder:
-    """A finder of the files to which the URIs in worlds refer.
+    """A finder of the files that the URIs in worlds refer to.
 
     ``model://NAME/PATH`` is searched for as ``NAME/PATH`` in these folders, in this order:
 
@@ -294,7 +294,7 @@ class ResourceFinder:
 
 
 def fuel_caches(environment: Mapping[str, str]) -> Iterator[Path]:
-    """Yield the folders in which gz stores downloaded models, which may not exist."""
+    """Yield gz's folders of downloaded models, which may not exist."""
     cache_path = environment.get("GZ_FUEL_CACHE_PATH") or environment.get("IGN_FUEL_CACHE_PATH")
     if cache_path:
         yield Path(cache_path)
@@ -424,7 +424,7 @@ def _find_in_other_case(path: Path) -> Path | None:
 
 def _missing_template_output(template: Path, path: Path) -> Missing:
     hint = phrase("the build creates it from '{name}'", name=template.name)
-    return Missing(phrase("there is no '{path}'", path=str(path)), hint, Severity.INFO)
+    return Missing(phrase("'{path}' does not exist", path=str(path)), hint, Severity.INFO)
 
 
 def _no_file(path: Path) -> Missing:
@@ -441,4 +441,4 @@ def _no_file(path: Path) -> Missing:
         hint = did_you_mean(path.name, names)
         if names and hint is None:
             hint = phrase("choose from {names}", names=joined(names[:8]))
-    return Missing(phrase("there is no '{path}'", path=str(path)), hint)
+    return Missing(phrase("'{path}' does not exist", path=str(path)), hint)

@@ -1,4 +1,4 @@
-"""Tests of whether SDF reads an element, and the parents in which it does."""
+"""Tests of whether and in which parents SDF reads an element."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _HARMLESS_PAIRS = frozenset({("collision", "material")})
 
 
 def allowed_parents(tag: str) -> tuple[str, ...]:
-    """Return the tags of the parents in which SDF allows an element.
+    """Return the tags of an element's allowed parents.
 
     The result is empty if SDF does not define the element, or allows it in more than three parents.
     """

@@ -148,7 +148,7 @@ def gravity_of(world: World) -> Vector3:
 
 
 def with_populations(world: World) -> World:
-    """Return a world in which copies of models replace the populations."""
+    """Replace the populations of a world by copies of their models."""
     copies = (model for population in world.populations for model in models_of(population))
     return replace(world, models=(*world.models, *copies), populations=())
 

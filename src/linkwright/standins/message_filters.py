@@ -21,7 +21,7 @@ _HEADERLESS_WARNING = (
 
 
 class SimpleFilter:
-    """The base class of filters: an output to which callbacks and other filters are connected.
+    """The base class of filters: an output with connected callbacks and other filters.
 
     Attributes:
         callbacks: registration number -> the callback and its additional arguments.

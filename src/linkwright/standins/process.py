@@ -30,7 +30,7 @@ def standin_path() -> str:
 
 
 def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return the environment in which a process and its children can import the stand-ins.
+    """Return an environment that lets a process and its children import the stand-ins.
 
     Args:
         base: the environment to extend; None for the environment of this process.

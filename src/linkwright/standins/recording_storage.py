@@ -85,7 +85,7 @@ class ReadOrderSortBy(enum.Enum):
 
 @dataclass(slots=True)
 class ReadOrder:
-    """The order in which messages are read."""
+    """The order of reading messages."""
 
     sort_by: ReadOrderSortBy = ReadOrderSortBy.ReceivedTimestamp
     reverse: bool = False
@@ -128,7 +128,7 @@ class TopicMetadata:
             setattr(self, name, value)
 
     def equals(self, other: TopicMetadata) -> bool:
-        """Return whether this metadata equals that of another topic."""
+        """Return whether this metadata equals another topic's."""
         return self == other
 
 

@@ -28,7 +28,7 @@ from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.recording_storage import StorageOptions
 from linkwright.standins.recordings import writer_for
 
-_POLL_SECONDS = 0.1
+_POLL_S = 0.1
 
 
 class ServiceRequestsSource(enum.Enum):
@@ -132,7 +132,7 @@ class RecordOptions:
 
 
 class _Transport:
-    """The base class of recorders and players, each of which runs a node in a separate context."""
+    """The base class of recorders and players. Each runs a node in a separate context."""
 
     _cancelled: ClassVar[threading.Event]
 
@@ -174,7 +174,7 @@ class _Transport:
 
             def spin_until(is_done: Callable[[], bool]) -> None:
                 while not (is_done() or self._cancelled.is_set()) and context.ok():
-                    executor.spin_once(timeout_sec=_POLL_SECONDS)
+                    executor.spin_once(timeout_sec=_POLL_S)
 
             yield node, spin_until
         except LinkwrightError as error:

@@ -13,7 +13,7 @@ from linkwright.standins.rclpy_api.action import ActionClient
 from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.session import spin_once, spin_until_future_complete
 
-_LOG_PERIOD = 1.0
+_LOG_PERIOD_S = 1.0
 """Seconds between log messages about a missing server."""
 _SPIN_TIMEOUT_S = 0.1
 _ACTIVE_STATE = "active"
@@ -268,7 +268,7 @@ class BasicNavigator(Node):
         if name not in self._actions:
             self._actions[name] = ActionClient(self, action_class, name)
         client = self._actions[name]
-        while not client.wait_for_server(timeout_sec=_LOG_PERIOD):
+        while not client.wait_for_server(timeout_sec=_LOG_PERIOD_S):
             self.info(f"'{name}' action server not available, waiting...")
         future = client.send_goal_async(action_class.Goal(**goal), on_feedback)
         spin_until_future_complete(self, future)
@@ -278,7 +278,7 @@ class BasicNavigator(Node):
         service = get_service(service_type)
         client = self.create_client(service, name)
         try:
-            while not client.wait_for_service(timeout_sec=_LOG_PERIOD):
+            while not client.wait_for_service(timeout_sec=_LOG_PERIOD_S):
                 self.info(f"{name} service not available, waiting...")
             future = client.call_async(service.Request(**request))
             spin_until_future_complete(self, future)
@@ -306,7 +306,7 @@ class BasicNavigator(Node):
             self.info("Setting initial pose")
             self._setInitialPose()
             self.info("Waiting for amcl_pose to be received")
-            spin_once(self, timeout_sec=_LOG_PERIOD)
+            spin_once(self, timeout_sec=_LOG_PERIOD_S)
 
     def _setInitialPose(self) -> None:
         message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()

@@ -101,7 +101,10 @@ class Journal:
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
         entries = [entry for entry in map(_parse_line, lines) if entry is not None]
         if not entries or entries[0] != self._plan_entry:
-            message = phrase("the unfinished sweep '{path}' has other runs than this one", path=display_path(self.path))
+            message = phrase(
+                "the runs of the unfinished sweep '{path}' differ from the runs of this one",
+                path=display_path(self.path),
+            )
             hint = phrase("use the same scenario, values, seeds and `--paths`, or remove the file to start again")
             raise LinkwrightError(Diagnostic("SWEEP108", message, hint=hint))
         for entry in entries[1:]:

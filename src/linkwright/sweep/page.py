@@ -86,7 +86,7 @@ def _escape(text: Phrase) -> str:
 
 
 def _finite_rows(table: Table, name: str) -> list[int]:
-    """Return the indices of the rows in which a result is a finite number.
+    """Return the indices of the rows with a finite number for a result.
 
     True and False are numbers: 1 and 0.
     """

@@ -22,7 +22,7 @@ _TASKS_PER_PROCESSOR = 2
 _LOCAL = "local"
 """The address for which Ray starts a cluster on this computer."""
 
-_TIMEOUT_SECONDS = 10.0
+_TIMEOUT_S = 10.0
 """The timeout of a connection to the cluster, in seconds."""
 
 Result = TypeVar("Result")
@@ -140,4 +140,4 @@ def _check_address(address: str) -> None:
     """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdigit():
-        socket.create_connection((host, int(port)), _TIMEOUT_SECONDS).close()
+        socket.create_connection((host, int(port)), _TIMEOUT_S).close()

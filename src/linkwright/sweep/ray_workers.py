@@ -20,7 +20,7 @@ Ray uses a process for several runs.
 
 
 def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) -> None:
-    """Run a scenario on a Ray cluster, to which the files in the scenario's folder are copied.
+    """Copy the files in a scenario's folder to a Ray cluster, and run the scenario there.
 
     If a process or a machine fails, its run is repeated once.
 

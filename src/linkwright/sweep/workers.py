@@ -21,7 +21,7 @@ from linkwright.sweep.scenario import describe_error
 MAX_ATTEMPTS = 2
 """The maximum number of attempts for a run whose process dies."""
 
-_TIMEOUT_SECONDS = 10.0
+_TIMEOUT_S = 10.0
 """The seconds that a process has to exit before it is killed."""
 
 Report = Callable[[Outcome], None]
@@ -101,7 +101,7 @@ class _Worker:
     def wait_for_end(self) -> str:
         """Wait until the process has ended, and describe its end as a clause without a subject."""
         self.connection.close()
-        self._process.join(_TIMEOUT_SECONDS)
+        self._process.join(_TIMEOUT_S)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()

@@ -397,7 +397,7 @@ class SteppedSimulation(SteppedGraph):
 
 
 def _with_world_friction(world: World, friction: float) -> World:
-    """Return a copy of a world in which all static models have a coefficient of friction."""
+    """Return a copy of a world with a coefficient of friction for all static models."""
     models = tuple(with_friction(model, friction) if model.static else model for model in world.models)
     return replace(world, models=models)
 

@@ -34,7 +34,7 @@ def render(dot_text: str, path: str | Path) -> None:
         hint = did_you_mean(suffix, IMAGE_SUFFIXES) or phrase("choose from {names}", names=joined(IMAGE_SUFFIXES))
         raise LinkwrightError(
             Diagnostic(
-                "URDF201", phrase("an image cannot be written as '{ending}'", ending=suffix or path.name), hint=hint
+                "URDF201", phrase("cannot write an image of type '{ending}'", ending=suffix or path.name), hint=hint
             )
         )
     try:

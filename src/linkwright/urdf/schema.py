@@ -165,7 +165,7 @@ def _number(name: str, meaning: str, unit: str = "", **details: Any) -> Attribut
 
 
 _NAME = AttributeRule("name", TEXT, "its name, unique among its kind", required=True, default="")
-_LABEL = AttributeRule("name", TEXT, "a name for people and tools", default="")
+_LABEL = AttributeRule("name", TEXT, "a name for users and tools", default="")
 
 ORIGIN = ElementRule(
     "origin",
@@ -269,7 +269,7 @@ INERTIAL = ElementRule(
     passes_element=True,
 )
 
-_LABEL = AttributeRule("name", TEXT, "a name for people and tools", default="")
+_LABEL = AttributeRule("name", TEXT, "a name for users and tools", default="")
 
 VISUAL = ElementRule(
     "visual",
@@ -430,7 +430,7 @@ CHILD = ElementRule(
 
 JOINT = ElementRule(
     "joint",
-    "a connection of two links",
+    "a connection between two links",
     (_NAME, AttributeRule("type", JOINT_TYPE, JOINT_TYPES_TEXT, required=True, default="fixed")),
     (ORIGIN, PARENT, CHILD, AXIS, LIMIT, MIMIC, SAFETY, DYNAMICS, CALIBRATION),
     is_repeated=True,

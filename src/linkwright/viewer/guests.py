@@ -32,7 +32,7 @@ _MIN_IDLE_TIME_S = 10.0
 
 @dataclass(slots=True)
 class _OpenRecording:
-    """A recording that pages show, with the time in seconds at which a page last showed it."""
+    """A recording that pages show, with the time in seconds when a page last showed it."""
 
     bag: BagReader
     graph: Graph

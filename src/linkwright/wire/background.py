@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.subscription import Subscription
     from linkwright.graph.node import Graph
 
-_JOINED_WITHIN = 10.0
+_JOIN_TIMEOUT_S = 10.0
 """Seconds after which the joining thread is abandoned, because an import that Ctrl-C ended may keep its lock."""
 
 _POLL_INTERVAL_S = 0.01
@@ -272,7 +272,7 @@ class BackgroundTransport(ABC):
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _end_joining(self) -> None:
-        deadline = time.monotonic() + _JOINED_WITHIN
+        deadline = time.monotonic() + _JOIN_TIMEOUT_S
         while self._join_thread.is_alive() and time.monotonic() < deadline:
             self._join_thread.join(_CLOSE_CHECK_INTERVAL)
             if self.waits_for_others:  # The thread may be in a call that cannot be interrupted.

@@ -1,4 +1,4 @@
-"""Macros, their parameters, and the tables in which macros are looked up."""
+"""Macros, their parameters, and tables of macros."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The style in which XML is formatted.
+"""The style of formatted XML.
 
 This is a separate module, so that the settings, which every check reads, do not import the formatter.
 """

@@ -294,7 +294,7 @@ def _parse_leniently(source: SourceText, read_as: str, readers: Phrase) -> tuple
 
 
 def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
-    """Return the text with all mistakes of the error's kind replaced.
+    """Return the text with all errors of one kind replaced.
 
     Raises:
         LinkwrightError: `error`, if no repair applies.

@@ -418,6 +418,6 @@ async def test_set_callback_without_result_rejects(graph):
     node.declare_parameter("a", 1)
     node.add_on_set_parameters_callback(lambda _: None)
     with pytest.warns(UserWarning, match="it should return SetParametersResult: .*<lambda>"):
-        verdict = node.set_parameters_atomically([Parameter("a", value=2)])
-    assert (verdict.successful, verdict.reason) == (False, "Callback returned an invalid type")
+        result = node.set_parameters_atomically([Parameter("a", value=2)])
+    assert (result.successful, result.reason) == (False, "Callback returned an invalid type")
     assert node.get_parameter("a").value == 1

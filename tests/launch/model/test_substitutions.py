@@ -273,7 +273,7 @@ class TestCommand:
             ("no-such-program x", "program 'no-such-program' does not start: No such file or directory"),
             ("echo 'open", "cannot be split"),
             ("  ", "is empty"),
-            ("xacro", "the xacro command names no model file"),
+            ("xacro", "the xacro command has no model file"),
             ("xacro --deps a.xacro", "option '--deps' of xacro"),
             ("xacro a.xacro b.xacro", "expects exactly one model file, but was given 2"),
         ],

@@ -182,7 +182,7 @@ def test_wheel_missing_from_index_is_one_error(
     (index.folder / "pure-1.0-py3-none-any.whl").unlink()
     assert index.pack(tmp_path / "pack", *LINUX) == 1
     errors = capsys.readouterr().err
-    assert "error[LEARN303]: pip cannot get " in errors
+    assert "error[LEARN303]: pip cannot download or build " in errors
     assert "Could not find a version that satisfies the requirement pure==1.0" in errors
     assert "repeat the command to continue" in errors
 
@@ -192,7 +192,7 @@ def test_wheel_with_wrong_hash_is_rejected(
 ) -> None:
     write_wheel(index.folder, "pure", requires=["evil"])
     assert index.pack(tmp_path / "pack", *LINUX) == 1
-    assert "error[LEARN303]: pip cannot get " in capsys.readouterr().err
+    assert "error[LEARN303]: pip cannot download or build " in capsys.readouterr().err
 
 
 def test_source_that_needs_compiler_is_rejected(

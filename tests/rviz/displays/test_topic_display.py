@@ -217,7 +217,7 @@ async def test_failing_message_is_reported_and_next_one_is_shown(monkeypatch):
 
 
 async def test_final_message_count_is_shown(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
+    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD_S", 0.05)
     async with open_world(config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 10)
         for x in range(4):
@@ -231,7 +231,7 @@ async def test_final_message_count_is_shown(monkeypatch):
 
 
 async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
+    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD_S", 0.05)
     async with open_world(config()) as world:
 
         def status() -> str:
@@ -250,7 +250,7 @@ async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch
 
 
 async def test_topic_type_mismatch_is_reported(monkeypatch):
-    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD", 0.05)
+    monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD_S", 0.05)
     async with open_world(RvizConfig.parse(FILE.replace("/clicked_point", "/words"))) as world:
         world.graph.create_node("speaker").create_publisher(get_message("std_msgs/msg/String"), "/words", 1)
         message = (

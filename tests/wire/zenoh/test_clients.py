@@ -59,7 +59,7 @@ def test_client_discovers_only_what_its_endpoints_need(processes):
 
 
 def test_first_graph_query_is_answered_completely(processes, monkeypatch):
-    monkeypatch.setattr(transport, "_ANSWERED_WITHIN", 60.0)  # enough for a busy machine
+    monkeypatch.setattr(transport, "_ANSWER_TIMEOUT_S", 60.0)  # enough for a busy machine
     monkeypatch.setattr(transport, "_QUIET", 1.0)
     talker, asks = processes("talker"), processes("asks")
     talker.node.create_publisher(String, "chatter", 10)
@@ -96,7 +96,7 @@ def test_outdated_liveliness_news_is_ignored_and_returned_token_kept(processes, 
     subscription = ear.node.create_subscription(String, "chatter", print, 10)
     ear.spin_until(lambda: subscription.get_publisher_count() == 1)
     (key,) = ear.transport._remote._tokens
-    monkeypatch.setattr(remote, "_READD_DELAY_SECONDS", 60.0)
+    monkeypatch.setattr(remote, "_READD_DELAY_S", 60.0)
     talker.node.destroy_publisher(publisher)
     ear.spin_until(lambda: subscription.get_publisher_count() == 0)
     late = SimpleNamespace(kind=zenoh.SampleKind.PUT, key_expr=key)
@@ -104,7 +104,7 @@ def test_outdated_liveliness_news_is_ignored_and_returned_token_kept(processes, 
     talker.node.create_publisher(String, "chatter", 10)
     ear.spin_until(lambda: subscription.get_publisher_count() > 0)
     assert subscription.get_publisher_count() == 1
-    monkeypatch.setattr(remote, "_READD_DELAY_SECONDS", 0.0)
+    monkeypatch.setattr(remote, "_READD_DELAY_S", 0.0)
     ear.transport._zenoh_engine._on_token(late)
     ear.spin_until(lambda: subscription.get_publisher_count() == 2)
 

@@ -92,7 +92,7 @@ def test_remote_nodes_and_topics_appear_and_disappear(processes):
 
 
 def test_discovery_does_not_settle_before_first_link(processes, monkeypatch):
-    monkeypatch.setattr(transport, "_ALONE_AFTER", float("inf"))
+    monkeypatch.setattr(transport, "_ALONE_TIMEOUT_S", float("inf"))
     a = processes("a")
     assert not a.transport.wait_for_discovery(2 * transport.SETTLE_TIME_S)
     processes("b")

@@ -116,7 +116,7 @@ export class AddDialog {
 
   private explainEmptyList(): string {
     const texts = strings.displays;
-    if (this.isWaiting) return texts.asking;
+    if (this.isWaiting) return texts.requestingTopics;
     return this.tab === "topic" && this.offeredChoices.topics.length === 0 ? texts.noTopics : texts.notFound;
   }
 

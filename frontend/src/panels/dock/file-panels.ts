@@ -43,7 +43,7 @@ export class FilePanels {
   private shownNumber: number | null = null;
   /** The file's panels that were open at the last comparison. */
   private lastOpenPanels: readonly PanelName[] | null = null;
-  /** Neither a file nor the browser specifies the arrangement of this page's panels. */
+  /** Whether neither a file nor the browser specifies the arrangement of this page's panels. */
   private isUnarranged = false;
   private isDrivable = false;
   /** Whether the browser stores no arrangement for the file. */

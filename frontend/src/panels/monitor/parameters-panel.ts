@@ -98,7 +98,7 @@ export class ParametersPanel implements Panel {
     const isUnchanged = elements.length === this.rows.childElementCount && elements.every((element, index) => element === this.rows.children[index]);
     if (!isUnchanged) this.rows.replaceChildren(...elements);
     if (node === null) this.showNote(texts.choose);
-    else if (parameters === null) this.showNote(texts.asking);
+    else if (parameters === null) this.showNote(texts.requestingParameters);
     else this.showNote(parameters.error ?? (shownParameters.length === 0 ? texts.none : ""));
   }
 

@@ -110,7 +110,7 @@ export class PlotPicker {
       row.addEventListener("click", () => this.choose(offer));
       return row;
     });
-    const emptyText = this.requestedTopic === null ? (this.topics.isKnown ? texts.noTopics : texts.asking) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
+    const emptyText = this.requestedTopic === null ? (this.topics.isKnown ? texts.noTopics : texts.requestingTopics) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
     this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, emptyText)]));
     this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.activeIndex}` : "");
     rows[this.activeIndex]?.scrollIntoView({ block: "nearest" });

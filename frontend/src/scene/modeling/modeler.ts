@@ -5,7 +5,7 @@ import { WorldDrawing } from "../displays/world";
 import { modelOf } from "../displays/world-models";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
-import { HANDLING_TOOLS } from "../world-handling";
+import { PASSIVE_TOOLS } from "../world-handling";
 import { LightMarks } from "./light-marks";
 import { Manipulation } from "./manipulation";
 import { Placer } from "./placer";
@@ -52,7 +52,7 @@ export class Modeler {
   /** Handles an event. Returns the event to pass to the active tool; null to pass none. */
   onPointer(event: ToolEvent): ToolEvent | null {
     const { modeling, tools } = this.session;
-    if (!modeling.isActive || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
+    if (!modeling.isActive || (tools.current && !PASSIVE_TOOLS.includes(tools.current.cls))) return event;
     if (this.manipulation.onPointer(event)) return null;
     const { placing } = modeling;
     if (this.placer.onPointer(event)) return null;

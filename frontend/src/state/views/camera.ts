@@ -36,22 +36,22 @@ export interface ViewSize {
   readonly height: number;
 }
 
-export function toFixed(point: Vector, target: Target): Vector {
+export function transformPointToFixed(point: Vector, target: Target): Vector {
   return add(rotateZ(point, target.yaw), target.position);
 }
 
-export function toTarget(point: Vector, target: Target): Vector {
+export function transformPointToTarget(point: Vector, target: Target): Vector {
   return rotateZ(subtract(point, target.position), -target.yaw);
 }
 
 /** Converts a camera from a target's frame to the fixed frame. */
 export function transformToFixed(camera: Camera, target: Target): Camera {
-  return transformCamera(camera, (point) => toFixed(point, target), target.yaw);
+  return transformCamera(camera, (point) => transformPointToFixed(point, target), target.yaw);
 }
 
 /** Converts a camera from the fixed frame to a target's frame. */
 export function transformToTarget(camera: Camera, target: Target): Camera {
-  return transformCamera(camera, (point) => toTarget(point, target), -target.yaw);
+  return transformCamera(camera, (point) => transformPointToTarget(point, target), -target.yaw);
 }
 
 /** Returns the ray from the camera through a pixel, counted from the upper left corner. */

@@ -1,6 +1,6 @@
-import { FIELD_OF_VIEW, toTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { FIELD_OF_VIEW, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { add, dot, scale, subtract, type Bounds, type Vector } from "./vector";
-import { number, type ViewValues } from "./view-controller";
+import { readNumber, type ViewValues } from "./view-controller";
 
 /** The margin around the box, as a factor of its size. */
 const MARGIN = 1.2;
@@ -38,7 +38,7 @@ export function computeFraming(camera: Camera, values: ViewValues, bounds: Bound
     front = Math.max(front, dot(corner, back));
   }
   const clipDistance = CLIP_SHARE * (distance - front);
-  const isClipped = clipDistance > 0 && number(values, NEAR_CLIP, 0) > clipDistance;
+  const isClipped = clipDistance > 0 && readNumber(values, NEAR_CLIP, 0) > clipDistance;
   return {
     center,
     distance,
@@ -49,8 +49,8 @@ export function computeFraming(camera: Camera, values: ViewValues, bounds: Bound
 
 /** Returns the bounding box in a target's frame of a box in the fixed frame. */
 export function transformBounds(bounds: Bounds, target: Target): Bounds {
-  const cornersInTarget = cornersOf(bounds).map((corner) => toTarget(corner, target));
-  const points = bounds.points?.map((point) => toTarget(point, target));
+  const cornersInTarget = cornersOf(bounds).map((corner) => transformPointToTarget(corner, target));
+  const points = bounds.points?.map((point) => transformPointToTarget(point, target));
   const extremeOf = (choose: (...coordinates: number[]) => number): Vector => {
     const chooseCoordinate = (i: 0 | 1 | 2): number => choose(...cornersInTarget.map((corner) => corner[i]));
     return [chooseCoordinate(0), chooseCoordinate(1), chooseCoordinate(2)];

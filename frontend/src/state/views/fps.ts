@@ -1,9 +1,9 @@
-import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { transformPointToFixed, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
 import { add, cross, length, subtract, type Bounds, type Vector } from "./vector";
 import {
   clampPitch,
-  number,
+  readNumber,
   RADIANS_PER_PIXEL,
   readVector,
   createVectorValues,
@@ -31,8 +31,8 @@ export class FpsController implements ViewController {
   readonly focalColor = 0xffff00;
 
   computeCamera(values: ViewValues): Camera {
-    const yaw = number(values, "Yaw", 0);
-    const pitch = clampPitch(number(values, "Pitch", 0));
+    const yaw = readNumber(values, "Yaw", 0);
+    const pitch = clampPitch(readNumber(values, "Pitch", 0));
     const back: Vector = [-Math.cos(yaw) * Math.cos(pitch), -Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
     const right: Vector = [Math.sin(yaw), -Math.cos(yaw), 0];
     return { position: readVector(values, "Position", START), right, up: cross(back, right), back, scale: null, focal: null };
@@ -48,8 +48,8 @@ export class FpsController implements ViewController {
     switch (this.motionOf(drag)) {
       case "rotate3d":
         return {
-          Yaw: wrapYaw(number(values, "Yaw", 0) - dx * RADIANS_PER_PIXEL),
-          Pitch: clampPitch(number(values, "Pitch", 0) + dy * RADIANS_PER_PIXEL),
+          Yaw: wrapYaw(readNumber(values, "Yaw", 0) - dx * RADIANS_PER_PIXEL),
+          Pitch: clampPitch(readNumber(values, "Pitch", 0) + dy * RADIANS_PER_PIXEL),
         };
       case "moveXY":
         return this.fly(values, [dx * METERS_PER_PIXEL, -dy * METERS_PER_PIXEL, 0]);
@@ -79,7 +79,7 @@ export class FpsController implements ViewController {
   }
 
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
-    return createVectorValues("Position", toTarget(toFixed(readVector(values, "Position", START), oldTarget), newTarget));
+    return createVectorValues("Position", transformPointToTarget(transformPointToFixed(readVector(values, "Position", START), oldTarget), newTarget));
   }
 
   motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): FpsMotion {

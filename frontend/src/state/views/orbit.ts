@@ -1,9 +1,9 @@
-import { FIELD_OF_VIEW, toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { FIELD_OF_VIEW, transformPointToFixed, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
 import { add, cross, distanceBetween, length, ORIGIN, scale, type Bounds, type Vector } from "./vector";
 import {
   clampPitch,
-  number,
+  readNumber,
   RADIANS_PER_PIXEL,
   readVector,
   createVectorValues,
@@ -94,7 +94,7 @@ export class OrbitController implements ViewController {
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
     const { focal, yaw } = orbitOf(values);
     const yawChange = oldTarget.yaw === newTarget.yaw ? {} : { Yaw: wrapYaw(yaw + oldTarget.yaw - newTarget.yaw) };
-    return { ...createVectorValues("Focal Point", toTarget(toFixed(focal, oldTarget), newTarget)), ...yawChange };
+    return { ...createVectorValues("Focal Point", transformPointToTarget(transformPointToFixed(focal, oldTarget), newTarget)), ...yawChange };
   }
 
   motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
@@ -125,9 +125,9 @@ export class OrbitController implements ViewController {
 
 export function orbitOf(values: ViewValues): { distance: number; yaw: number; pitch: number; focal: Vector } {
   return {
-    distance: clampDistance(number(values, "Distance", START.distance)),
-    yaw: number(values, "Yaw", START.angle),
-    pitch: clampPitch(number(values, "Pitch", START.angle)),
+    distance: clampDistance(readNumber(values, "Distance", START.distance)),
+    yaw: readNumber(values, "Yaw", START.angle),
+    pitch: clampPitch(readNumber(values, "Pitch", START.angle)),
     focal: readVector(values, "Focal Point", ORIGIN),
   };
 }

@@ -1,6 +1,6 @@
 import { add, scale, subtract, rotateZ, type Bounds, type Vector } from "./vector";
 import { computeOrbitDirection, OrbitController } from "./orbit";
-import { number, wrapYaw, type ViewValues } from "./view-controller";
+import { readNumber, wrapYaw, type ViewValues } from "./view-controller";
 import type { ViewSize } from "./camera";
 
 /** The margin around a robot in a world: a factor of its size, and its minimum in m. */
@@ -40,13 +40,13 @@ export function computeViewAround(values: ViewValues, { min, max }: Bounds, size
   const top: Vector = [center[0], center[1], max[2]];
   const ring = Array.from({ length: RING_POINT_COUNT }, (_, i) => add(center, rotateZ([1, 0, 0], (i * 2 * Math.PI) / RING_POINT_COUNT), span / 2 + margin));
   const fittedValues = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -margin), max: add(max, [1, 1, 1], margin) }, size);
-  const maxDistance = number(fittedValues, "Distance", 0);
+  const maxDistance = readNumber(fittedValues, "Distance", 0);
   const computeCoveredShare = (viewpoint: Vector): number => ring.filter((position) => !isVisible(viewpoint, position)).length / RING_POINT_COUNT;
   for (const distanceFactor of DISTANCE_FACTORS) {
     let bestView: { score: number; values: ViewValues } | null = null;
     for (const { maxScore, pitch, side } of DIRECTIONS) {
       if (bestView && maxScore <= bestView.score) continue;
-      const Yaw = wrapYaw(number(values, "Yaw", 0) + side);
+      const Yaw = wrapYaw(readNumber(values, "Yaw", 0) + side);
       const Pitch = ROBOT_PITCH + pitch;
       const viewpoint = add(center, computeOrbitDirection(Yaw, Pitch), distanceFactor * maxDistance);
       if (!isVisible(viewpoint, center) || !isVisible(viewpoint, top)) continue;

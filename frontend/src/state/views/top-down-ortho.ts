@@ -1,8 +1,8 @@
-import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { transformPointToFixed, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
 import { rotateZ, type Bounds, type Vector } from "./vector";
 import {
-  number,
+  readNumber,
   RADIANS_PER_PIXEL,
   type Drag,
   type Look,
@@ -28,11 +28,11 @@ export class TopDownOrthoController implements ViewController {
 
   computeCamera(values: ViewValues): Camera {
     const scale = scaleOf(values);
-    const angle = number(values, "Angle", 0);
+    const angle = readNumber(values, "Angle", 0);
     // A negative scale, which RViz allows by a fast drag, mirrors the view in both directions.
     const side = Math.sign(scale);
     return {
-      position: [number(values, "X", 0), number(values, "Y", 0), HEIGHT],
+      position: [readNumber(values, "X", 0), readNumber(values, "Y", 0), HEIGHT],
       right: rotateZ([side, 0, 0], angle),
       up: rotateZ([0, side, 0], angle),
       back: [0, 0, 1],
@@ -51,9 +51,9 @@ export class TopDownOrthoController implements ViewController {
     const scale = scaleOf(values);
     switch (this.motionOf(drag)) {
       case "rotate2d":
-        return { Angle: number(values, "Angle", 0) + dx * RADIANS_PER_PIXEL };
+        return { Angle: readNumber(values, "Angle", 0) + dx * RADIANS_PER_PIXEL };
       case "moveXY":
-        return shiftValues(values, rotateZ([-dx / scale, dy / scale, 0], number(values, "Angle", 0)));
+        return shiftValues(values, rotateZ([-dx / scale, dy / scale, 0], readNumber(values, "Angle", 0)));
       case "zoom":
         return { Scale: zoomScale(scale, 1 - dy * ZOOM_PER_PIXEL) };
     }
@@ -74,14 +74,14 @@ export class TopDownOrthoController implements ViewController {
 
   mimic({ cls, values, camera }: Look): ViewValues {
     if (cls === "rviz_default_plugins/TopDownOrtho") {
-      return { Scale: scaleOf(values), Angle: number(values, "Angle", 0), X: camera.position[0], Y: camera.position[1] };
+      return { Scale: scaleOf(values), Angle: readNumber(values, "Angle", 0), X: camera.position[0], Y: camera.position[1] };
     }
     const [x, y] = camera.focal ?? camera.position;
     return { X: x, Y: y };
   }
 
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
-    const [x, y] = toTarget(toFixed([number(values, "X", 0), number(values, "Y", 0), 0], oldTarget), newTarget);
+    const [x, y] = transformPointToTarget(transformPointToFixed([readNumber(values, "X", 0), readNumber(values, "Y", 0), 0], oldTarget), newTarget);
     return { X: x, Y: y };
   }
 
@@ -102,7 +102,7 @@ function zoomScale(scale: number, factor: number): number {
 }
 
 function scaleOf(values: ViewValues): number {
-  return clampScale(number(values, "Scale", START_SCALE));
+  return clampScale(readNumber(values, "Scale", START_SCALE));
 }
 
 /** Keeps the scale away from zero, without changing its sign. */
@@ -111,5 +111,5 @@ function clampScale(scale: number): number {
 }
 
 function shiftValues(values: ViewValues, [x, y]: Vector): ViewValues {
-  return { X: number(values, "X", 0) + x, Y: number(values, "Y", 0) + y };
+  return { X: readNumber(values, "X", 0) + x, Y: readNumber(values, "Y", 0) + y };
 }

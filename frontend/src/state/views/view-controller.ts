@@ -60,13 +60,13 @@ export interface ViewController {
 const PITCH_LIMIT = Math.PI / 2 - 0.001;
 export const RADIANS_PER_PIXEL = 0.005;
 
-export function number(values: ViewValues, name: string, fallback: number): number {
+export function readNumber(values: ViewValues, name: string, fallback: number): number {
   const value = values[name];
   return typeof value === "number" ? value : fallback;
 }
 
 export function readVector(values: ViewValues, name: string, fallback: Vector): Vector {
-  const readComponent = (axis: "X" | "Y" | "Z", i: 0 | 1 | 2): number => number(values, `${name}/${axis}`, fallback[i]);
+  const readComponent = (axis: "X" | "Y" | "Z", i: 0 | 1 | 2): number => readNumber(values, `${name}/${axis}`, fallback[i]);
   return [readComponent("X", 0), readComponent("Y", 1), readComponent("Z", 2)];
 }
 

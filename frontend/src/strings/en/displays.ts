@@ -79,6 +79,6 @@ export const displays = {
   noTopics: "No topic has a publisher yet.",
   otherDescription: "Another node now publishes the description",
   notFound: "Nothing found.",
-  asking: "Requesting topics…",
+  requestingTopics: "Requesting topics…",
   topics: "Known topics",
 };

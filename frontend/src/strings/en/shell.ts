@@ -49,7 +49,7 @@ export const shell = {
   changedOnDisk: "The file was changed",
   changedOnDiskQuestion: (path: string): string => `Another program has changed ${path} since it was read. Replace it?`,
   replace: "Replace",
-  refused: "That did not work",
+  refused: "The command failed",
   tooLarge: (name: string): string => `${name} is too large to be a configuration.`,
   fileName: "File name",
   folder: "Folder",

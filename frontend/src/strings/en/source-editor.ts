@@ -63,5 +63,5 @@ export const sourceEditor = {
   nothingToRename: "There is nothing here that can be renamed.",
   renamed: (name: string, count: number): string => `Renamed to ${name} in ${plural(count, "file")}, not saved yet`,
   notEditable: (file: string, why: string): string => `Nothing was renamed: ${file} cannot be changed. ${why}`,
-  changedMeanwhile: "Nothing was renamed: a text has changed in the meantime.",
+  changedMeanwhile: "Nothing was renamed: a file has changed in the meantime.",
 };

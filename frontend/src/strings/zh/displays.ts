@@ -76,6 +76,6 @@ export const displays: typeof english = {
   noTopics: "目前还没有节点在任何话题上发布消息。",
   otherDescription: "现在显示的是另一个节点的描述",
   notFound: "没有找到。",
-  asking: "正在查询……",
+  requestingTopics: "正在查询……",
   topics: "已知话题",
 };

@@ -100,8 +100,8 @@ def _compare_hashes(recorded: str, present: str) -> int:
         print(localized(phrase("the description is the same as in the recording")))
         return SAME
     message = phrase(
-        "the description differs from that of the recording, which contains only its hash: SHA-256 {recorded}... -> "
-        "{present}...",
+        "the description differs from the recorded one; the recording has only a hash: "
+        "SHA-256 {recorded}... -> {present}...",
         recorded=recorded[:_HASH_DIGITS],
         present=present[:_HASH_DIGITS],
     )

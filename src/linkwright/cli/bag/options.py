@@ -26,8 +26,8 @@ def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--qos-profile-overrides-path",
         metavar="FILE",
-        help="a YAML file that maps topics to QoS policies, which override those derived from the "
-        "publishers and subscriptions found",
+        help="a YAML file that maps topics to QoS policies, which override the policies of the "
+        "discovered publishers and subscriptions",
     )
 
 

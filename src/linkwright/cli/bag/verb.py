@@ -21,11 +21,11 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 def run_info(arguments: argparse.Namespace) -> int:
     """Print the contents of a recording."""
-    from linkwright.bag import BagReader, summary_text
+    from linkwright.bag import BagReader, summarize_bag
 
     with BagReader(arguments.bag) as bag:
         print_diagnostics(bag.findings, sys.stderr)
-        sys.stdout.write(summary_text(bag, topic_names_only=arguments.topic_name))
+        sys.stdout.write(summarize_bag(bag, topic_names_only=arguments.topic_name))
     return 0
 
 

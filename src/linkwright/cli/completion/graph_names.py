@@ -19,9 +19,9 @@ from linkwright.files.user_folders import cache_folder
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-_FRESH_SECONDS = 2.0
+_FRESH_S = 2.0
 """Seconds for which the cached names are not refreshed."""
-_STALE_SECONDS = 600.0
+_STALE_S = 600.0
 """Seconds after which the cached names are too old to offer."""
 
 
@@ -39,10 +39,10 @@ def names_of(kind: str) -> list[str]:
         age = time.time() - path.stat().st_mtime
         names: list[str] = json.loads(path.read_text(encoding="utf-8"))[kind]
     except (OSError, ValueError, KeyError):
-        age, names = _STALE_SECONDS, []
-    if age > _FRESH_SECONDS:
+        age, names = _STALE_S, []
+    if age > _FRESH_S:
         _start_discovery(path)
-    return names if age < _STALE_SECONDS else []
+    return names if age < _STALE_S else []
 
 
 def _path() -> Path:
@@ -50,11 +50,11 @@ def _path() -> Path:
 
 
 def _start_discovery(path: Path) -> None:
-    """Start a discovery in another process, unless one started less than `_FRESH_SECONDS` ago."""
+    """Start a discovery in another process, unless one started less than `_FRESH_S` ago."""
     marker = path.with_suffix(".begun")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        if marker.exists() and time.time() - marker.stat().st_mtime < _FRESH_SECONDS:
+        if marker.exists() and time.time() - marker.stat().st_mtime < _FRESH_S:
             return
         marker.touch()
         import subprocess

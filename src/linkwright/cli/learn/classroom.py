@@ -22,7 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "the current one, else the current folder if it is empty, else COURSE_ws in it)",
     )
     parser.add_argument("--course", metavar="COURSE", help="a shipped course by its name, or the folder of a course")
-    add_viewer_options(parser, terminal=False)
+    add_viewer_options(parser, offers_terminal=False)
 
 
 def run(arguments: argparse.Namespace) -> int:

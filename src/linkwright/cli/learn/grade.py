@@ -140,7 +140,7 @@ def run_grade(arguments: argparse.Namespace) -> int:
     seconds = f"{time.monotonic() - begin:.0f}"
     print_message(localized(phrase("{size} in {seconds} s", size=class_size(students), seconds=seconds)))
     if not is_complete:
-        print_message(localized(phrase("some steps were not graded; repeat the command, which runs only these again")))
+        print_message(localized(phrase("some steps were not graded; run the command again to grade only these")))
     return FINE if all(student.is_graded for student in students) else FINDINGS
 
 
@@ -155,7 +155,7 @@ def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[Run
 
 
 def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
-    """Return the selected steps in the order of the course: those of the lessons, or individual steps in them.
+    """Return the selected steps in the order of the course: the steps of the lessons, or individual ones.
 
     Raises:
         LinkwrightError: LEARN106, the course has no such lesson, or the lessons have no such step.
@@ -253,4 +253,4 @@ def _print_protections(students: Sequence[StudentMarks]) -> None:
         return
     for protection, meaning in PROTECTIONS.items():
         if protection.value not in in_force:
-            print_message(localized(phrase("not in force on this system: {protection}", protection=meaning)))
+            print_message(localized(phrase("not enforced on this system: {protection}", protection=meaning)))

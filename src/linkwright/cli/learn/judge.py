@@ -109,12 +109,15 @@ def configure_world(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of the world (default: 0)")
     _add_rival(parser)
     add_simulation_options(parser)
-    add_viewer_options(parser, terminal=False)
+    add_viewer_options(parser, offers_terminal=False)
 
 
 def _add_rival(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--rival", metavar="FILE", type=Path, help="the program of the other robot (default: that of the exercise)"
+        "--rival",
+        metavar="FILE",
+        type=Path,
+        help="the program of the other robot (default: the program of the exercise)",
     )
 
 
@@ -134,7 +137,7 @@ def _rival_program(exercise: Exercise, chosen_program: Path | None) -> Path | No
     if chosen_program is None:
         return None if exercise.rival is None else exercise.rival.program
     if exercise.rival is None:
-        message = phrase("the exercise '{name}' has one robot, so that `--rival` has no effect", name=exercise.id)
+        message = phrase("the exercise '{name}' has only one robot, so `--rival` has no effect", name=exercise.id)
         raise LinkwrightError(Diagnostic("LEARN145", message, hint=phrase("leave out the option")))
     _require_program(chosen_program)
     return chosen_program.absolute()
@@ -196,7 +199,7 @@ def _show_exercise(exercise: Exercise, program: Path, rival: Path | None, viewer
 def _copy_template(exercise: Exercise, program: Path) -> int:
     if program.exists():
         raise LinkwrightError(
-            Diagnostic("LEARN144", phrase("'{path}' already exists and is not changed", path=display_path(program)))
+            Diagnostic("LEARN144", phrase("'{path}' already exists, so it is not changed", path=display_path(program)))
         )
     program.write_text(exercise.template.read_text(encoding="utf-8"), encoding="utf-8")
     print(display_path(program))

@@ -66,7 +66,7 @@ def run_list(arguments: argparse.Namespace) -> int:
             mark = _PASSED if noted.passed is not None else _TAKEN_OVER if noted.taken_over else " "
             print(f"  {mark} {step.id}: {step.title.get(lang)}")
     if any(noted.taken_over for noted in classroom.progress.steps.values()):
-        print(f"\n{_TAKEN_OVER} {localized(phrase('taken over from the course'))}")
+        print(f"\n{_TAKEN_OVER} {localized(phrase('solution copied from the course'))}")
     return 0
 
 
@@ -120,7 +120,7 @@ def run_check(arguments: argparse.Namespace) -> int:
     if count := len(classroom.steps_to_catch_up(step)):
         command = f"linkwright learn catch-up {step.address}"
         message = phrase(
-            "unfinished steps before this one: {count}; `{command}` takes them over from the course",
+            "unfinished steps before this one: {count}; `{command}` copies their solutions from the course",
             count=count,
             command=command,
         )
@@ -210,7 +210,8 @@ def run_catch_up(arguments: argparse.Namespace) -> int:
         )
     else:
         message = phrase(
-            "there is nothing to write; add --yes to mark the steps before {step} as taken over", step=step.address
+            "there is nothing to write; add --yes to mark the steps before {step} as copied from the course",
+            step=step.address,
         )
     print(localized(message), file=sys.stderr)
     return 0 if arguments.yes else 1

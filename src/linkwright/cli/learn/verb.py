@@ -21,7 +21,9 @@ VERBS = {
         steps.configure_solution, steps.run_solution, help="copy the solution of a step, or print the number"
     ),
     "catch-up": SubVerb(
-        steps.configure_catch_up, steps.run_catch_up, help="take over from the course all steps before a step"
+        steps.configure_catch_up,
+        steps.run_catch_up,
+        help="copy the solutions of all steps before a step from the course",
     ),
     "exercises": SubVerb(judge.configure_exercises, judge.run_exercises, help="list the exercises with a judge"),
     "judge": SubVerb(judge.configure_judge, judge.run_judge, help="judge a program for an exercise in several worlds"),

@@ -219,7 +219,7 @@ class _CalledDescription:
         return os.path.realpath(path) == os.path.realpath(self.path)
 
     def _with_folders(self, value: str) -> str | None:
-        """Return a value in which share folders replace the marks of packages.
+        """Replace the marks of packages in a value by their share folders.
 
         The result is None if a package is not found.
         """

@@ -20,5 +20,5 @@ def has_same_bytes(old: Path, new: Path) -> bool:
 
 
 def content_hash(file: Path) -> str:
-    """Return the hash of a file's contents. For a Git LFS pointer, return the hash of the file to which it points."""
+    """Return the hash of a file's contents; for a Git LFS pointer, the hash that it contains."""
     return lfs_hash(file) or file_hash(file)

@@ -1,4 +1,4 @@
-"""Normalize texts in which equal numbers may be written differently."""
+"""Normalize texts, so that equal numbers have the same form."""
 
 from __future__ import annotations
 

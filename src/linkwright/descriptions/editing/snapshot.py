@@ -1,4 +1,4 @@
-"""Snapshots of a description: the texts of its files, some of which trial edits replace."""
+"""Snapshots of a description: the texts of its files, with the replacements of trial edits."""
 
 from __future__ import annotations
 

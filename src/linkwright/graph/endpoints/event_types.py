@@ -74,7 +74,7 @@ class QoSLivelinessChangedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSMatchedInfo(EventCount):
-    """The number of endpoints that have matched so far, and the number that match now."""
+    """The numbers of endpoints that have matched in total and that match now."""
 
     current_count: int
     current_count_change: int

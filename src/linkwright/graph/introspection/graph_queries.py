@@ -36,7 +36,7 @@ class SharedNameMonitor:
         self._lock = threading.RLock()
 
     def update(self, local_nodes: Collection[NodeHandle], remote_nodes: Collection[NodeIdentity]) -> None:
-        """Compare the node names of this process with those of other processes.
+        """Compare the node names of this process with the names in other processes.
 
         Reports the shared names when they have changed.
         """

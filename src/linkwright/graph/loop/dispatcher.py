@@ -170,7 +170,7 @@ def accepts(callback: Callable[..., object], count: int, *, unknown: bool) -> bo
 
 
 _MAX_CALLS_PER_TURN = 256
-_MAX_TURN_SECONDS = 0.002
+_MAX_TURN_S = 0.002
 _MAX_TURNS = 1000
 """The maximum number of loop iterations without a call for which `settle` waits for idle coroutines."""
 
@@ -302,7 +302,7 @@ class LoopDispatcher:
     def _run_turn(self) -> None:
         queue = self._ready
         clock = time.perf_counter
-        end_s = clock() + _MAX_TURN_SECONDS
+        end_s = clock() + _MAX_TURN_S
         try:
             for _ in range(_MAX_CALLS_PER_TURN):
                 if not queue:

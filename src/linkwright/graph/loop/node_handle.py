@@ -78,7 +78,7 @@ class ReentrantCallbackGroup(CallbackGroup):
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """A group in which only one member runs at a time.
+    """A group that runs only one member at a time.
 
     A coroutine counts as running until it ends, even while it awaits.
     """

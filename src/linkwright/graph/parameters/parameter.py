@@ -85,7 +85,7 @@ class ParameterRules:
         return node_values
 
     def skipped_findings_for(self, full_name: str) -> list[Diagnostic]:
-        """Return the findings about parameters of a node whose values are not allowed, so that they are not set."""
+        """Return the findings about parameters that are not set because their values are not allowed."""
         return [finding for pattern, finding in self.skipped_findings if _expression(pattern).fullmatch(full_name)]
 
 

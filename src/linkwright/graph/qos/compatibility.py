@@ -42,7 +42,7 @@ def limit_ns(duration: Duration) -> int | None:
 
 
 def resolve_defaults(qos: QoSProfile) -> QoSProfile:
-    """Return a profile in which policies left to the middleware have Cyclone DDS's values.
+    """Return a profile with Cyclone DDS's values for the policies left to the middleware.
 
     Unspecified durations become infinite.
     """
@@ -68,7 +68,7 @@ def _or_infinite(duration: Duration) -> Duration:
 
 
 def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[QoSPolicyKind]:
-    """Return the policies in which a subscription requests more than a publisher offers.
+    """Return the policies that a subscription requests and a publisher does not offer.
 
     The list is empty if the profiles are compatible.
 

@@ -243,7 +243,7 @@ class QoSProfile:
 
     @property
     def lifespan(self) -> Duration:
-        """The time after publication for which a message is delivered."""
+        """The time after publication until a message expires."""
         return self._lifespan
 
     @lifespan.setter
@@ -272,7 +272,7 @@ class QoSProfile:
 
     @property
     def liveliness_lease_duration(self) -> Duration:
-        """The time for which the publisher counts as alive after its last assertion."""
+        """The time until the publisher counts as lost after its last assertion."""
         return self._liveliness_lease_duration
 
     @liveliness_lease_duration.setter

@@ -89,7 +89,7 @@ class ScheduledAlarm:
 
 
 class FineAlarms:
-    """The calls that are scheduled on an event loop, in the order in which they are due.
+    """The scheduled calls of an event loop, in the order of their times.
 
     Each time the kernel timer expires, it is set again. This also makes its file unreadable again, so the file need not
     be read.

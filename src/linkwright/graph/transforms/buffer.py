@@ -94,7 +94,7 @@ class FrameSnapshot:
 
 @dataclass(slots=True)
 class _Plan:
-    """The rows in which the transforms of a list of frames are stored.
+    """The rows that store the transforms of a list of frames.
 
     `revision` is the revision at which the parents were last checked.
     """
@@ -205,7 +205,7 @@ class TransformBuffer:
         return self._names
 
     def remove(self, names: Iterable[str]) -> None:
-        """Remove the transforms of some frames, such as those of a robot that was replaced.
+        """Remove the transforms of some frames, such as the links of a replaced robot.
 
         A frame that is the parent of other frames remains, but without a parent.
         """

@@ -40,10 +40,10 @@ _OLD_DATA_PERIOD_S = 2.0
 
 Two publishers whose clocks differ would otherwise cause a warning for every message.
 """
-_MAX_PLANS = 64
-"""The maximum number of plans. Publishers usually send the same lists of frames, so few plans are needed."""
+_MAX_RESOLVED = 64
+"""The maximum number of lists of frames that are kept resolved. Publishers usually send the same lists."""
 
-_Plan = list[tuple["FrameCache | None", int]]
+_Entries = list[tuple["FrameCache | None", int]]
 """For each transform of a message, the cache of the child frame and the number of the parent frame."""
 
 _NOT_DEFINED = "Source or target frame is not yet defined"
@@ -68,7 +68,7 @@ class BufferCore:
         self._names = ["NO_PARENT"]
         self._caches: list[FrameCache | None] = [None]
         self._authorities: dict[int, str] = {}
-        self._plans: dict[tuple[tuple[str, ...], tuple[str, ...], str, bool], _Plan] = {}
+        self._resolved_frames: dict[tuple[tuple[str, ...], tuple[str, ...], str, bool], _Entries] = {}
         self._walker = Walker(self._caches, self._names, self.all_frames_as_string)
 
     def set_transform(self, transform: Any, authority: str) -> None:
@@ -103,14 +103,14 @@ class BufferCore:
         parents, children, stamps, poses = columns
         if not _are_usable(poses):
             for parent, child, stamp_ns, pose in zip(parents, children, stamps, poses.tolist(), strict=True):
-                self._set(parent, child, stamp_ns, tuple(pose), authority, static=static)
+                self._store(parent, child, stamp_ns, tuple(pose), authority, static=static)
             return
         with self._lock:
-            plan = self._plan(parents, children, authority, static)
-            for row, ((cache, parent_number), stamp_ns) in enumerate(zip(plan, stamps, strict=True)):
+            entries = self._resolve(parents, children, authority, static)
+            for row, ((cache, parent_number), stamp_ns) in enumerate(zip(entries, stamps, strict=True)):
                 if cache is None or not cache.add(stamp_ns, Sample(parent_number, poses, row)):
                     pose = tuple(poses[row].tolist())
-                    self._set(parents[row], children[row], stamp_ns, pose, authority, static=static)
+                    self._store(parents[row], children[row], stamp_ns, pose, authority, static=static)
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> Any:
         """Return the pose of the source frame in the target frame, as a TransformStamped message.
@@ -170,7 +170,7 @@ class BufferCore:
             return True, ""
         with self._lock:
             for argument, frame in (("target", target_frame), ("source", source_frame)):
-                reason = self._refusal_reason(f"canTransform argument {argument}_frame", frame)
+                reason = self._frame_id_problem(f"canTransform argument {argument}_frame", frame)
                 if reason:
                     return False, reason
             return self._can_transform(target_frame, source_frame, to_nanoseconds(time))
@@ -182,14 +182,14 @@ class BufferCore:
         frames = (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame))
         with self._lock:
             for argument, frame in frames:
-                reason = self._refusal_reason(f"canTransform argument {argument}_frame", frame)
+                reason = self._frame_id_problem(f"canTransform argument {argument}_frame", frame)
                 if reason:
                     return False, reason
             result = self._can_transform(target_frame, fixed_frame, to_nanoseconds(target_time))
             return self._can_transform(fixed_frame, source_frame, to_nanoseconds(source_time)) if result[0] else result
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """Return the latest time for which all moving frames between two frames have transforms.
+        """Return the latest time with transforms for all moving frames between two frames.
 
         The result is zero if all frames between them are static.
 
@@ -312,11 +312,13 @@ class BufferCore:
         pose = (
             translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z, rotation.w,
         )  # fmt: skip
-        self._set(header.frame_id, message.child_frame_id, to_nanoseconds(header.stamp), pose, authority, static=static)
+        self._store(
+            header.frame_id, message.child_frame_id, to_nanoseconds(header.stamp), pose, authority, static=static
+        )
 
-    def _set(self, parent: str, child: str, stamp_ns: int, pose: Transform, authority: str, *, static: bool) -> None:
+    def _store(self, parent: str, child: str, stamp_ns: int, pose: Transform, authority: str, *, static: bool) -> None:
         parent, child = parent.removeprefix("/"), child.removeprefix("/")
-        problem = _refusal_reason(parent, child, pose, authority)
+        problem = _transform_problem(parent, child, pose, authority)
         if problem is not None:
             self._logger.error(problem)
             return
@@ -332,38 +334,39 @@ class BufferCore:
             throttle_duration_sec=_OLD_DATA_PERIOD_S,
         )
 
-    def _plan(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Plan:
+    def _resolve(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Entries:
         """Return, for each transform, the cache of the child frame and the number of its parent.
 
         The result is computed once for all messages with these frames. The cache is None for a transform that is
         refused, which must be logged.
         """
         key = (parents, children, authority, static)
-        plan = self._plans.get(key)
-        if plan is None:
-            entries: _Plan = []
-            for parent, child in zip(parents, children, strict=True):
-                parent, child = parent.removeprefix("/"), child.removeprefix("/")
-                if not parent or not child or parent == child:
-                    entries.append((None, 0))
-                    continue
-                number = self._add_frame(child)
-                entries.append((self._cache(number, static), self._add_frame(parent)))
-                self._authorities[number] = authority
-            if len(self._plans) >= _MAX_PLANS:
-                self._plans.clear()
-            plan = self._plans[key] = entries
-        return plan
+        known = self._resolved_frames.get(key)
+        if known is not None:
+            return known
+        entries: _Entries = []
+        for parent, child in zip(parents, children, strict=True):
+            parent, child = parent.removeprefix("/"), child.removeprefix("/")
+            if not parent or not child or parent == child:
+                entries.append((None, 0))
+                continue
+            number = self._add_frame(child)
+            entries.append((self._cache(number, static), self._add_frame(parent)))
+            self._authorities[number] = authority
+        if len(self._resolved_frames) >= _MAX_RESOLVED:
+            self._resolved_frames.clear()
+        self._resolved_frames[key] = entries
+        return entries
 
-    def _cache(self, frame_index: int, static: bool) -> FrameCache:
+    def _cache(self, frame_number: int, static: bool) -> FrameCache:
         """Return the cache of a frame.
 
         A frame that changes between static and moving gets a new cache.
         """
-        cache = self._caches[frame_index]
+        cache = self._caches[frame_number]
         if cache is None or isinstance(cache, StaticCache) is not static:
-            cache = self._caches[frame_index] = StaticCache() if static else MovingCache(self._span_ns)
-            self._plans.clear()
+            cache = self._caches[frame_number] = StaticCache() if static else MovingCache(self._span_ns)
+            self._resolved_frames.clear()
         return cache
 
     def _add_frame(self, frame: str) -> int:
@@ -383,7 +386,7 @@ class BufferCore:
             raise unknown_frame_error(argument, frame, self._numbers)
         return number
 
-    def _refusal_reason(self, argument: str, frame: str) -> str | None:
+    def _frame_id_problem(self, argument: str, frame: str) -> str | None:
         reason: str | None = frame_name_problem(frame)
         if reason is None and frame not in self._numbers:
             reason = "frame does not exist"
@@ -451,7 +454,7 @@ def to_nanoseconds(time: Any) -> int:
     return int(time.nanoseconds)
 
 
-def _refusal_reason(parent: str, child: str, pose: Transform, authority: str) -> str | None:
+def _transform_problem(parent: str, child: str, pose: Transform, authority: str) -> str | None:
     """Return the reason for refusing a transform, with tf2's wording, or None."""
     x, y, z, w = pose[3:]
     # The comparison is false for NaN and infinite numbers, too, so this single test covers the usual case.

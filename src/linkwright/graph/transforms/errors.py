@@ -42,7 +42,7 @@ class InvalidArgumentException(TransformException):
 
 
 class ExtrapolationException(TransformException):
-    """Raised when a transform is requested for a time for which there is no data."""
+    """Raised when there is no data for the requested time."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text, code="GRAPH305")

@@ -94,7 +94,7 @@ class Walker:
         return path
 
     def latest_common_time(self, target: int, source: int) -> int:
-        """Return the latest time for which all moving frames between two frames have transforms.
+        """Return the latest time with transforms for all moving frames between two frames.
 
         The time is in nanoseconds, and 0 if all frames between the two are static.
 

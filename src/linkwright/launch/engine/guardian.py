@@ -15,7 +15,7 @@ from pathlib import Path
 
 _PROGRAM = Path(__file__).with_name("guardian_program.py")
 _MARK_VARIABLE = "LINKWRIGHT_LAUNCH"
-_EXIT_TIMEOUT_SECONDS = 2.0
+_EXIT_TIMEOUT_S = 2.0
 
 
 class Guardian:
@@ -62,7 +62,7 @@ class Guardian:
         with contextlib.suppress(OSError):
             process.stdin.close()
         try:
-            process.wait(_EXIT_TIMEOUT_SECONDS)
+            process.wait(_EXIT_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()

@@ -13,7 +13,7 @@ import signal
 import sys
 import time
 
-_POLL_SECONDS = 0.02
+_POLL_S = 0.02
 _SIGNAL_STAGES = ((signal.SIGINT, 1.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 0.0))
 
 
@@ -78,7 +78,7 @@ def end_groups(groups: set[int]) -> None:
         groups = {group for group in groups if send_signal(group, signal_number)}
         deadline = time.monotonic() + seconds
         while groups and time.monotonic() < deadline:
-            time.sleep(_POLL_SECONDS)
+            time.sleep(_POLL_S)
             groups = {group for group in groups if send_signal(group, 0)}
 
 

@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 _HAS_GROUPS = hasattr(os, "killpg")
 _KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
-_DRAIN_SECONDS = 0.2
+_DRAIN_S = 0.2
 """The maximum seconds to read output after a process has ended.
 
 Its children may keep the streams open.
 """
 _MAX_LINE_LENGTH = 100_000
 """The maximum number of characters of an incomplete line."""
-_ESCALATION_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
+_ESCALATION_S = {"SIGTERM": 0.0, "SIGKILL": 0.5}
 """The seconds to wait before each signal after the user has repeated the interrupt.
 
 The keys are the names of the signals.
@@ -101,7 +101,7 @@ class RunningProcess:
         try:
             await self._ended.wait()
             with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(self._streams_closed.wait(), _DRAIN_SECONDS)
+                await asyncio.wait_for(self._streams_closed.wait(), _DRAIN_S)
         finally:
             # Even after an exception, no member of the process group may outlive the launcher.
             if not self._ended.is_set():
@@ -131,7 +131,7 @@ class RunningProcess:
             (self.plan.seconds_to_sigkill, "SIGTERM", "SIGKILL"),
         ):
             start = time.monotonic()
-            if await self._ends_within(seconds, _ESCALATION_SECONDS[next_signal]):
+            if await self._ends_within(seconds, _ESCALATION_S[next_signal]):
                 return
             waited_seconds = round(time.monotonic() - start, 1) if self._is_hurried else seconds
             self._log.write_error(

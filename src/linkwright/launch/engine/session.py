@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.running_launch import Schedule
 
 
-_REPORT_DELAY_SECONDS = 1.0
+_REPORT_DELAY_S = 1.0
 """The seconds after Ctrl-C until the processes that delay the end are logged."""
 
 
@@ -280,7 +280,7 @@ class LaunchSession:
             return
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
         if self.loop is not None:
-            self.loop.call_later(_REPORT_DELAY_SECONDS, self._log_running_processes)
+            self.loop.call_later(_REPORT_DELAY_S, self._log_running_processes)
 
     def seconds_to_end(self) -> float:
         """Return the maximum time in seconds until the processes end."""

@@ -365,7 +365,7 @@ class LaunchContext:
         return any(True for _ in self.matching_handlers(event))
 
     def matching_handlers(self, event: Event) -> Iterator[Handler]:
-        """Return the handlers that accept an event, in the order in which they are called."""
+        """Return the handlers that accept an event, in calling order."""
         return (handler for handler in tuple(self._event_handlers) if handler.matches(event))
 
     def emit_event_sync(self, event: Event) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class LaunchDescription(LaunchDescriptionEntity):
-    """A list of entities in the order in which they are visited.
+    """A list of entities in the order of their visits.
 
     Args:
         initial_entities: the entities.
@@ -37,7 +37,7 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities in the order in which they are visited."""
+        """The entities in the order of their visits."""
         return self._entities
 
     @property

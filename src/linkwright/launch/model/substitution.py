@@ -68,7 +68,7 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, substitutions: Iterable[Substitution]) -> str:
-    """Return the concatenated texts to which substitutions evaluate."""
+    """Evaluate substitutions, and return their concatenated texts."""
     return "".join(context.perform_substitution(substitution) for substitution in substitutions)
 
 

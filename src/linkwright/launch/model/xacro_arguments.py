@@ -35,7 +35,7 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
         if separator:
             if glued := _GLUED_FILE.match(name):
                 raise _usage_error(
-                    phrase("no space separates the argument '{name}' of xacro from the file", name=glued[2]),
+                    phrase("a space is missing between the file and the argument '{name}' of xacro", name=glued[2]),
                     phrase("write a space before '{name}:='", name=glued[2]),
                 )
             if value and not name.startswith("_"):
@@ -70,7 +70,7 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
             files=files[0],
         )
     if not files:
-        raise _usage_error(phrase("the xacro command names no model file"), phrase("write Command(['xacro ', path])"))
+        raise _usage_error(phrase("the xacro command has no model file"), phrase("write Command(['xacro ', path])"))
     return XacroCall(folder / files[0], tuple(arguments.items())), warning
 
 

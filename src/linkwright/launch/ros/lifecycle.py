@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
 
 _CONFIGURE, _ACTIVATE = 1, 3
-_POLL_SECONDS = 0.2
+_POLL_S = 0.2
 _QUEUE_DEPTH = 10
 
 
@@ -120,7 +120,7 @@ async def _wait_briefly(future: Any) -> None:
             wake_up.set_result(None)
 
     future.add_done_callback(lambda _: loop.call_soon_threadsafe(wake))
-    handle = loop.call_later(_POLL_SECONDS, wake)
+    handle = loop.call_later(_POLL_S, wake)
     try:
         await wake_up
     finally:

@@ -83,7 +83,7 @@ class ParameterFile(Located):
         return self._allow_substs if self._allows_substitutions is None else self._allows_substitutions
 
     def evaluate(self, context: LaunchContext) -> Path:
-        """Return the path of the file, or of a temporary copy in which substitutions are evaluated.
+        """Return the path of the file, or of a temporary copy with evaluated substitutions.
 
         Raises:
             LinkwrightError: LAUNCH133, a file with substitutions has errors; the error is also a SubstitutionFailure.

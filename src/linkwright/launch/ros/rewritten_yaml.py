@@ -74,7 +74,7 @@ class _YamlFileSubstitution(Substitution):
 
 
 class RewrittenYaml(_YamlFileSubstitution):
-    """A substitution that evaluates to the path of a new parameter file, a copy in which values are replaced.
+    """A substitution that copies a parameter file with new values, and evaluates to the copy's path.
 
     Args:
         source_file: the file to copy.
@@ -194,7 +194,7 @@ def _add_value(content: Any, path: list[str], value: Any) -> None:
 
 
 class ReplaceString(_YamlFileSubstitution):
-    """A substitution that evaluates to the path of a new file, a copy in which texts are replaced.
+    """A substitution that copies a file with replaced texts, and evaluates to the copy's path.
 
     Args:
         source_file: the file to copy.

@@ -112,7 +112,7 @@ class SetParameter(Action):
 
 @expose_action("set_parameters_from_file")
 class SetParametersFromFile(Action):
-    """An action that sets the parameters in a file for all later nodes to which the file applies."""
+    """An action that sets a file's parameters for all later nodes that the file matches."""
 
     def __init__(self, filename: Path | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)

@@ -10,7 +10,7 @@ from typing import Any
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.event_handlers import OnShutdown
 
-_SPIN_SECONDS = 0.2
+_SPIN_S = 0.2
 
 
 class ROSAdapter:
@@ -92,7 +92,7 @@ class ROSAdapter:
 
     def _spin(self) -> None:
         while self._running:
-            self._executor.spin_once(timeout_sec=_SPIN_SECONDS)
+            self._executor.spin_once(timeout_sec=_SPIN_S)
 
 
 def get_ros_adapter(context: LaunchContext) -> ROSAdapter:

@@ -12,7 +12,7 @@ _DOMAINS = range(1, 101)
 _FIRST_PORT = 7400
 _PORTS_OF_DOMAIN = 250
 
-_WAIT_SECONDS = 0.2
+_WAIT_S = 0.2
 
 _locks: list[socket.socket] = []
 """Sockets that are open until the process ends, however it ends."""
@@ -33,7 +33,7 @@ def hold_domain() -> int:
         for domain in domains[start:] + domains[:start]:
             if _hold(domain):
                 return domain
-        time.sleep(_WAIT_SECONDS)
+        time.sleep(_WAIT_S)
 
 
 def _hold(domain: int) -> bool:

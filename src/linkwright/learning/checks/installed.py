@@ -16,8 +16,8 @@ from linkwright.learning.checks.findings import add_hint
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.process.patience import PatientClock
 
-_TIMEOUT_SECONDS = 10.0
-_PERIOD_SECONDS = 0.2
+_TIMEOUT_S = 10.0
+_PERIOD_S = 0.2
 _LINE = re.compile(r'File ".*setup\.py", line (\d+)')
 _RUNNER = """
 import json, runpy, sys, types
@@ -80,7 +80,7 @@ def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
     try:
         output = _run_setup(folder)
     except subprocess.TimeoutExpired:
-        raise NotYet(phrase("setup.py did not end within {seconds:g} s", seconds=_TIMEOUT_SECONDS)) from None
+        raise NotYet(phrase("setup.py did not end within {seconds:g} s", seconds=_TIMEOUT_S)) from None
     except subprocess.CalledProcessError as error:
         raise NotYet(_describe_failure(error.stderr.strip().splitlines() or [""])) from None
     lines = output.splitlines()
@@ -121,9 +121,9 @@ def _run_setup(folder: Path) -> str:
         errors="replace",
     ) as process:
         while (outputs := _read_outputs(process)) is None:
-            if clock.read() > _TIMEOUT_SECONDS:
+            if clock.read() > _TIMEOUT_S:
                 process.kill()
-                raise subprocess.TimeoutExpired(command, _TIMEOUT_SECONDS)
+                raise subprocess.TimeoutExpired(command, _TIMEOUT_S)
     output, errors = outputs
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, command, output, errors)
@@ -131,9 +131,9 @@ def _run_setup(folder: Path) -> str:
 
 
 def _read_outputs(process: subprocess.Popen[str]) -> tuple[str, str] | None:
-    """Return standard output and standard error of a process if it ends within `_PERIOD_SECONDS`, or None."""
+    """Return standard output and standard error of a process if it ends within `_PERIOD_S`, or None."""
     try:
-        return process.communicate(timeout=_PERIOD_SECONDS)
+        return process.communicate(timeout=_PERIOD_S)
     except subprocess.TimeoutExpired:
         return None
 

@@ -36,16 +36,16 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_WAIT_SECONDS = 15.0
+_WAIT_S = 15.0
 """The seconds that a condition may take. Processes start slowly on a loaded machine."""
 
-_QUIET_SECONDS = 1.2
+_QUIET_S = 1.2
 """The seconds without a new node or topic after which nothing more is expected of the nodes of this process."""
 
 _QUIET_SECONDS_OF_PROCESSES = 6.0
 """The same, if the launch has started the learner's programs, each in a process of its own."""
 
-_PERIOD_SECONDS = 0.02
+_PERIOD_S = 0.02
 _NODE = "lesson_check"
 _PROCESS_LINE = re.compile(r"^\[([^\]\s]+-\d+)\] (.*)$")
 _DEATH = re.compile(r"^\[ERROR\] \[([^\]\s]+)-\d+\]: process has died")
@@ -125,9 +125,9 @@ class LaunchCheck:
         if session is not None and not self._run.done():
             self._loop.call_soon_threadsafe(session.context.emit_event_sync, events.Shutdown(reason="the check ended"))
             with suppress(Exception):
-                self._run.result(_WAIT_SECONDS)
+                self._run.result(_WAIT_S)
         self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join(_WAIT_SECONDS)
+        self._thread.join(_WAIT_S)
         if not self._thread.is_alive():
             self._loop.close()
 
@@ -158,9 +158,7 @@ class LaunchCheck:
         """
         names = self.nodes()
         if repeated := sorted(name for name in set(names) if names.count(name) > 1):
-            raise NotYet(
-                phrase("two nodes have the name '{name}'; each node needs a name of its own", name=repeated[0])
-            )
+            raise NotYet(phrase("two nodes have the name '{name}'; each node needs its own name", name=repeated[0]))
 
     def expect_node(self, name: str) -> None:
         """Require a node to run.
@@ -317,10 +315,10 @@ class LaunchCheck:
             return function()
 
         future = asyncio.run_coroutine_threadsafe(call(), self._loop)
-        if not wait([future], _PERIOD_SECONDS).done:
+        if not wait([future], _PERIOD_S).done:
             clock = PatientClock()
-            while not wait([future], _PERIOD_SECONDS).done:
-                if clock.read() > _WAIT_SECONDS:
+            while not wait([future], _PERIOD_S).done:
+                if clock.read() > _WAIT_S:
                     raise TimeoutError
         return future.result()
 
@@ -336,9 +334,9 @@ class LaunchCheck:
             graph = self._graph()
             if graph != last_graph:
                 last_change, last_graph = clock.read(), graph
-            if clock.read() > min(_WAIT_SECONDS, last_change + self._quiet_seconds):
+            if clock.read() > min(_WAIT_S, last_change + self._quiet_seconds):
                 raise NotYet(problem() if callable(problem) else problem)
-            time.sleep(_PERIOD_SECONDS)
+            time.sleep(_PERIOD_S)
 
     def _is_true(self, condition: Callable[[], bool]) -> bool:
         """Return whether a condition of the graph is true.
@@ -361,8 +359,8 @@ class LaunchCheck:
     @property
     def _quiet_seconds(self) -> float:
         if self._session is None or not self._graph()[0]:
-            return _WAIT_SECONDS
-        return _QUIET_SECONDS_OF_PROCESSES if self._session.processes.names else _QUIET_SECONDS
+            return _WAIT_S
+        return _QUIET_SECONDS_OF_PROCESSES if self._session.processes.names else _QUIET_S
 
     def _failure(self) -> Phrase:
         """Return the reason why the launch ended before the check."""

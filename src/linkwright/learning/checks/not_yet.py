@@ -1,4 +1,4 @@
-"""The exception with which a check reports that it is not satisfied yet."""
+"""The exception of a check that is not satisfied yet."""
 
 from __future__ import annotations
 

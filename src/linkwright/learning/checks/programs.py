@@ -28,7 +28,7 @@ _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
-    """Return a function that runs the ``main`` of an executable that a package's ``setup.py`` declares.
+    """Return a function that runs the ``main`` of an executable from a package's ``setup.py``.
 
     The returned function imports the learner's module when it is called. Pass it to `SteppedGraph.start_program`.
 

@@ -311,7 +311,7 @@ class JointCheck(_CheckedPart):
         if tuple(self.joint.axis) == _DEFAULT_AXIS:
             raise self._not_yet(
                 phrase(
-                    "the axis of the joint '{joint}' is 1 0 0, as without <axis>, but should be {expected}",
+                    "the axis of the joint '{joint}' is 1 0 0, the default without <axis>, but should be {expected}",
                     joint=self.joint.name,
                     expected=_vector_text(axis),
                 )

@@ -38,7 +38,7 @@ TIME_LIMIT = 120.0
 Checks with simulated worlds take the longest.
 """
 
-_PERIOD_SECONDS = 0.25
+_PERIOD_S = 0.25
 
 PYTHON = [sys.executable]
 """The command that runs Python for checks. Tests measure the coverage of its processes."""
@@ -79,7 +79,7 @@ _IMPORTED = (
 _ERROR_BYTES = 1 << 16
 """The number of bytes that are kept of the standard error of a process: the last ones."""
 
-_CLOSING_SECONDS = 5.0
+_CLOSING_S = 5.0
 """The seconds to wait for the end of the standard error. A program that has left the session can keep it open."""
 
 
@@ -265,7 +265,7 @@ class CheckProcess:
         processors = usable_processors()
         while max(clock.read(), clock.cpu_seconds / processors) < self._time_limit:
             with suppress(subprocess.TimeoutExpired):
-                process.wait(min(_PERIOD_SECONDS, self._time_limit))
+                process.wait(min(_PERIOD_S, self._time_limit))
                 return True
         return False
 
@@ -288,7 +288,7 @@ def _last_bytes() -> Iterator[tuple[bytearray, int]]:
         yield last, writer
     finally:
         os.close(writer)
-        thread.join(_CLOSING_SECONDS)
+        thread.join(_CLOSING_S)
 
 
 def _end_group(process: Program) -> None:

@@ -78,7 +78,7 @@ def grade_class(
 
 
 def check_extras(steps: Sequence[Step]) -> None:
-    """Raise LEARN116 if a lesson needs an extra that is not installed, which would fail each student."""
+    """Raise LEARN116 if an extra that a lesson needs is not installed."""
     for extra in dict.fromkeys(extra for step in steps for extra in step.lesson.needs):
         if find_spec(EXTRAS[extra]) is None:
             raise missing_extra("LEARN116", ModuleNotFoundError(name=EXTRAS[extra]))

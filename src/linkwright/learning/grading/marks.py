@@ -11,7 +11,7 @@ from linkwright.learning.checks.results import CheckResult
 from linkwright.learning.grading.submissions import Submission
 from linkwright.learning.local_text import LocalText
 
-NOT_GRADED = phrase("not graded, because the check could not be carried out")
+NOT_GRADED = phrase("not graded, because the check could not run")
 
 
 @dataclass(frozen=True)

@@ -109,7 +109,7 @@ def _step_name(step: str, titles: Mapping[str, LocalText]) -> str:
 
 
 def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText]) -> str:
-    """Return the section of a student, whose link target is inside ``details``, so that a link opens it."""
+    """Return the section of a student. Its link target is inside ``details``, so that a link opens it."""
     notes = "".join(f"<p class='soft'>{_texts(note)}</p>" for note in student.submission.notes)
     rows = [_format_step(student, step, mark, titles) for step, mark in student.marks.items()]
     headings = [
@@ -117,7 +117,7 @@ def _student(index: int, student: StudentMarks, titles: Mapping[str, LocalText])
         phrase("Passed"),
         phrase("Points"),
         phrase("Not yet"),
-        phrase("Hints and solution, as the student's file claims"),
+        phrase("Hints and solution, according to the student's file"),
         phrase("Time"),
     ]
     table = _table(headings, rows, numbers=(2, 5)) if rows else ""
@@ -143,7 +143,7 @@ def _protections(students: Sequence[StudentMarks]) -> str:
         f"<li>{'✓' if protection.value in in_force else '✗'} {_translated(text)}</li>"
         for protection, text in PROTECTIONS.items()
     )
-    return f"<h2>{_translated(phrase('Protections that were in force'))}</h2><ul>{items}</ul>"
+    return f"<h2>{_translated(phrase('Enforced protections'))}</h2><ul>{items}</ul>"
 
 
 def _points(student: StudentMarks) -> str:

@@ -19,7 +19,7 @@ from linkwright.learning.grading.marks import Mark
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import Exceeded, Limits, Outcome, describe_exceeded, run_in_sandbox
 
-_SLOW_SECONDS = 2.0
+_SLOW_S = 2.0
 """A failed run of more seconds may have waited in vain, and is repeated without other runs."""
 
 _MAX_BYTES = 4 << 20
@@ -104,7 +104,7 @@ def _run(job: Job) -> Mark:
         protections=protections,
         is_repeated=job.is_repeated,
         is_graded=not result.has_machine_fault,
-        may_differ=result.has_machine_fault or (not result.passed and outcome.seconds > _SLOW_SECONDS),
+        may_differ=result.has_machine_fault or (not result.passed and outcome.seconds > _SLOW_S),
     )
 
 

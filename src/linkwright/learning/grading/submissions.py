@@ -73,7 +73,7 @@ def _open_submission(student: str, folder: Path, course: Course) -> Submission:
         if folder.suffix.lower() in _ARCHIVES:
             submission.note(phrase("it is an archive; unpack it first"))
         else:
-            submission.note(phrase("it is a file and not the folder of a student"))
+            submission.note(phrase("it is a file, not a student's folder"))
         return submission
     except OSError as error:
         submission.is_readable = False

@@ -46,7 +46,7 @@ def local_workers(count: int) -> Iterator[RunJobs]:
 
 @contextmanager
 def ray_workers(address: str) -> Iterator[RunJobs]:
-    """Yield a function that runs jobs on a Ray cluster, to which the course and the copies of folders are sent.
+    """Send the course and copies of the folders to a Ray cluster, and yield a function that runs jobs there.
 
     Raises:
         LinkwrightError: SWEEP113, Ray is not installed; SWEEP114, there is no cluster at the address.

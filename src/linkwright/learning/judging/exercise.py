@@ -161,7 +161,7 @@ def find_exercise(name: str) -> Exercise:
             phrase("there is no exercise '{name}'", name=name),
             hint=did_you_mean(name, names)
             or phrase(
-                "name a folder with a {file}, or one of the shipped exercises: {names}",
+                "pass a folder with a {file}, or the name of a shipped exercise: {names}",
                 file=EXERCISE_FILE,
                 names=quoted_names(names),
             ),

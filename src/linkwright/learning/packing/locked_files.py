@@ -1,4 +1,4 @@
-"""The packages that a target needs, in the versions with which this Linkwright was tested.
+"""The packages that a target needs, in the tested versions.
 
 ``tools/pack_wheels.py`` creates their table, ``wheels.json``, from ``uv.lock``: the packages that the extras need,
 with markers and the names, checksums and sizes of the wheels for all targets. So neither a resolver nor a
@@ -60,7 +60,7 @@ def locked_packages() -> Packages:
 
 
 def known_extras(packages: Packages) -> list[str]:
-    """Return the extras of Linkwright for which the table has packages."""
+    """Return the extras of Linkwright that the table has packages for."""
     return sorted(packages["linkwright"]["extras"])
 
 

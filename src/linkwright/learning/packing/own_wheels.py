@@ -89,7 +89,7 @@ def _build_wheel(name: str, wheels: Path) -> Path:
     except metadata.PackageNotFoundError:
         raise _unusable(phrase("'{name}' is not installed as a distribution", name=name)) from None
     if _is_editable(distribution):
-        raise _unusable(phrase("'{name}' runs from the files of a checkout that is gone", name=name))
+        raise _unusable(phrase("'{name}' is installed from a checkout that no longer exists", name=name))
     path = wheels / f"{canonicalize_name(name).replace('-', '_')}-{distribution.version}-py3-none-any.whl"
     draft = path.with_suffix(".draft")
     with zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as archive:

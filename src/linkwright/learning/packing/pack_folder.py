@@ -88,7 +88,7 @@ class PackFolder:
         self.path.mkdir(parents=True, exist_ok=True)
         if any(self.path.iterdir()) and not (self.path / _SETTINGS).exists():
             message = phrase("'{path}' is neither empty nor a pack", path=display_path(self.path))
-            hint = phrase("name a new folder, or one that `linkwright learn pack` made")
+            hint = phrase("pass a new folder, or one that `linkwright learn pack` created")
             raise LinkwrightError(Diagnostic("LEARN307", message, hint=hint))
         self.wheels.mkdir(exist_ok=True)
         self.requirements(select_targets((), ())[0]).parent.mkdir(exist_ok=True)
@@ -144,7 +144,7 @@ class PackFolder:
             return {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
         except (OSError, ValueError):
             message = phrase("the pack '{path}' is not complete", path=display_path(self.path))
-            hint = phrase("repeat the command that made it; it continues where it was interrupted")
+            hint = phrase("run the command that created it again; it continues where it was interrupted")
             raise LinkwrightError(Diagnostic("LEARN305", message, hint=hint)) from None
 
 

@@ -122,7 +122,7 @@ def _run_pip(
     )
     if done.returncode:
         message = phrase(
-            "pip cannot get {files}: {reason}",
+            "pip cannot download or build {files}: {reason}",
             files=_first_names(requested_names),
             reason=foreign(_reason(done.stderr)),
         )

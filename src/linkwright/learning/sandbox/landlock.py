@@ -1,4 +1,4 @@
-"""Landlock, with which the Linux kernel restricts the paths that a process and its descendants may access.
+"""Landlock: the Linux kernel restricts the paths that a process and its descendants may access.
 
 Landlock needs Linux 5.13 or later, but no privileges. Newer versions of its interface protect more.
 """

@@ -31,7 +31,7 @@ _IFF_MULTICAST = 0x1000
 
 
 def enter_user_namespace() -> None:
-    """Move this process into a new user namespace, in which it may create the other namespaces.
+    """Move this process into a new user namespace, so that it may create the other namespaces.
 
     Raises:
         OSError: The system does not allow it.

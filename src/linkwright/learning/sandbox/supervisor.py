@@ -20,7 +20,7 @@ from linkwright.learning.sandbox.processes import end_descendants
 from linkwright.learning.sandbox.starting import Confinement, Messages, Start
 from linkwright.learning.sandbox.usage import Watchdog
 
-_INTERVAL_SECONDS = 0.05
+_INTERVAL_S = 0.05
 _NAMESPACES = frozenset({"processes", "mounts", "ipc", "network"})
 _TRUNCATE_VERSION = 3
 """The version of Landlock since which the size of files outside cannot be changed."""
@@ -178,7 +178,7 @@ class _Supervisor:
         for source in sources:
             poll.register(source, select.POLLIN)
         while True:
-            for descriptor, _ in poll.poll(_INTERVAL_SECONDS * 1000):
+            for descriptor, _ in poll.poll(_INTERVAL_S * 1000):
                 is_open = self._take_message() if descriptor == self._messages.reader else self._output.read(descriptor)
                 if not is_open:
                     poll.unregister(descriptor)

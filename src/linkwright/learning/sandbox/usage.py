@@ -15,7 +15,7 @@ from linkwright.learning.sandbox.outcome import Exceeded, Limits
 from linkwright.learning.sandbox.processes import ProcessUsage, descendants, nameless_files, own_memory, written_bytes
 from linkwright.process.patience import PatientClock
 
-_INTERVAL_SECONDS = 0.04
+_INTERVAL_S = 0.04
 _TIME_FRACTION = 0.1
 """The fraction of the time that may pass with walks over the folder."""
 
@@ -103,7 +103,7 @@ class Watchdog:
         if now < self._next_check:
             return None
         exceeded = self._find_exceeded()
-        self._next_check = time.monotonic() + max(_INTERVAL_SECONDS, 4 * (time.monotonic() - now))
+        self._next_check = time.monotonic() + max(_INTERVAL_S, 4 * (time.monotonic() - now))
         return exceeded
 
     def _find_exceeded(self) -> Exceeded | None:

@@ -405,7 +405,8 @@ class InertiaTooSmall(Rule):
             ):
                 yield self.report(
                     phrase(
-                        "the inertia of link '{name}' is {factor} times smaller than that of a solid of its size",
+                        "the inertia of link '{name}' is {factor} times smaller than the "
+                        "inertia of a solid of its size",
                         name=link.name,
                         factor=_grouped_digits(uniform_moment / largest),
                     ),

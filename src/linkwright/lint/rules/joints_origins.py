@@ -17,7 +17,7 @@ from linkwright.xmltree import Element
 
 
 class OriginFar(Rule):
-    """A joint whose origin is so far away that it can only be in millimeters.
+    """A joint origin so large that it can only be in millimeters.
 
     ## Why
 

@@ -54,7 +54,7 @@ _PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "lau
 
 
 class LaunchedPackageUnknown(Rule):
-    """A launch file starts a node of a package whose name looks misspelled.
+    """A launch file names a package, but the name looks misspelled.
 
     ## Why
 

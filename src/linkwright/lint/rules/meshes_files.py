@@ -85,7 +85,7 @@ def _folder_hint(use: MeshUse, name: str) -> Phrase | None:
 
 
 class UnknownPackage(Rule):
-    """A mesh URI that names a package that is not found.
+    """A mesh URI with a package that is not found.
 
     ## Why
 
@@ -238,7 +238,7 @@ class WrongCase(Rule):
             corrected = _with_case_of(use.mesh.filename, existing_file)
             yield self.report(
                 phrase(
-                    "the mesh file is named '{name}', and not '{path_name}': upper and lower case differ",
+                    "the mesh file is named '{name}', not '{path_name}': upper and lower case differ",
                     name=existing_file.name,
                     path_name=path.name,
                 )

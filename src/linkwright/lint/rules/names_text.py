@@ -250,7 +250,10 @@ class NameUpperCase(Rule):
                     "the name of the {kind} '{name}' is not in lower case with underscores", kind=term(kind), name=name
                 )
                 yield self.report(
-                    message, element, "name", hint=phrase("use the usual form '{snake}'", snake=snake_case)
+                    message,
+                    element,
+                    "name",
+                    hint=phrase("write it in lower case with underscores: '{snake}'", snake=snake_case),
                 )
 
 

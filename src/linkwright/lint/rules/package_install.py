@@ -335,7 +335,7 @@ def _top_folder(folder: str) -> str:
 
 
 def nearest_folder(package: PackageContext, folder: str) -> str | None:
-    """Return the folder whose name is most similar to that of a missing folder, or None.
+    """Return the folder with the name most similar to a missing folder's, or None.
 
     Only folders in the same parent folder are compared. The result is also None if the folder exists.
     """

@@ -18,7 +18,7 @@ from linkwright.lint.unknown_names import (
 
 
 class MisspelledAttribute(Rule):
-    """An attribute whose name is almost that of a URDF attribute.
+    """A misspelled URDF attribute.
 
     ## Why
 

@@ -24,7 +24,7 @@ from linkwright.xmltree import Element
 
 
 class MisspelledElement(Rule):
-    """An element whose name is almost that of a URDF element.
+    """A misspelled URDF element.
 
     ## Why
 

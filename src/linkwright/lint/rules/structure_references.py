@@ -202,7 +202,7 @@ class ControlJointUnknown(Rule):
 
 
 class ControlInterfaceMisspelled(Rule):
-    """An interface in `<ros2_control>` whose name is almost that of a standard interface.
+    """A misspelled standard interface in `<ros2_control>`.
 
     ## Why
 

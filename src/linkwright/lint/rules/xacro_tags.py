@@ -187,7 +187,7 @@ class XacroNamespaceAddress(Rule):
             if _OLD_NAMESPACE_URI.fullmatch(uri):
                 message = phrase("the prefix 'xacro' is declared with an old URI")
             else:
-                message = phrase("the prefix 'xacro' is declared with a URI other than that of ROS")
+                message = phrase("the prefix 'xacro' is not declared with the URI of ROS")
             fix = replace_value(root, "xmlns:xacro", ADDRESS)
             hint = phrase('write xmlns:xacro="{address}"', address=ADDRESS)
             yield self.report(message, root, "xmlns:xacro", hint=hint, fix=fix)

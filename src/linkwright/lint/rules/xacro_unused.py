@@ -340,7 +340,7 @@ def _shows_message(element: Element) -> bool:
 
 
 def _belongs_to_table(definition: Definition, file: FileFacts, used_names: frozenset[str]) -> bool:
-    """Return whether a property belongs to a table of properties, most of which are used.
+    """Return whether a property belongs to a table of mostly used properties.
 
     The properties of a table are in one file, and their names differ only in the last word.
     """

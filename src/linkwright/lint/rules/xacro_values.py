@@ -20,7 +20,7 @@ _NAME_ATTRIBUTES = frozenset(
 
 
 class LiteralChangesType(XacroRule):
-    """A value that xacro turns into a number or a truth value before it becomes part of a name.
+    """A value that xacro turns into a number or a boolean before it becomes part of a name.
 
     ## Why
 
@@ -277,11 +277,11 @@ def _is_changed_by_literal_rule(value: str) -> bool:
 
 
 def _kind(value: object) -> Phrase:
-    return phrase("a truth value") if isinstance(value, bool) else phrase("a number")
+    return phrase("a boolean") if isinstance(value, bool) else phrase("a number")
 
 
 def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:
-    """Return an element and an attribute in which ``${name}`` becomes part of a name, or None.
+    """Return an element and its attribute that uses ``${name}`` as part of a name, or None.
 
     The element is inside `macro` or, if `macro` is None, outside all macros that hide the name.
     """

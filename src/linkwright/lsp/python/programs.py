@@ -1,4 +1,4 @@
-"""The installed language servers for Python files, and the environment in which they find modules."""
+"""The installed language servers for Python files, and their environment."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _path_of(name: str) -> Path | None:
 
 
 def program_environment(folders: Sequence[Path], workspace_stubs: Path) -> dict[str, str]:
-    """Return the environment in which a language server finds the user's modules.
+    """Return an environment that lets a language server find the user's modules.
 
     These are the Python packages of the workspace and, unless ROS 2 is installed, the stand-ins and messages.
 

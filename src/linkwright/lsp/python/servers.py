@@ -18,7 +18,7 @@ Message = dict[str, Any]
 """A message of the protocol: a request, a response or a notification."""
 
 INITIALIZE_ID = "linkwright-initialize"
-_ENDING_SECONDS = 2.0
+_ENDING_S = 2.0
 
 
 class Peer(Protocol):
@@ -62,7 +62,7 @@ class Stream:
     def close(self) -> None:
         """Close the stream after all messages were written."""
         self._waiting.put(None)
-        self._thread.join(_ENDING_SECONDS)
+        self._thread.join(_ENDING_S)
 
     def _write(self, output: IO[bytes]) -> None:
         with suppress(OSError, ValueError), output:  # The peer has ended.
@@ -154,7 +154,7 @@ class PythonServer:
         """Close the input of the process, so that the process ends, or end it after a timeout."""
         self._stream.close()
         try:
-            self._process.wait(_ENDING_SECONDS)
+            self._process.wait(_ENDING_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()

@@ -90,7 +90,7 @@ async def _prove_refactoring(
 
 
 def _content_modified_error() -> JsonRpcException:
-    message = localized(phrase("a text has changed in the meantime"))
+    message = localized(phrase("a file has changed in the meantime"))
     return JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
 
 

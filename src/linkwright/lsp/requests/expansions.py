@@ -67,7 +67,7 @@ def _expansions(
 def implementations(
     project: Workspace, texts: Mapping[Path, str], file: Path, offset: int, encoding: types.PositionEncodingKind | str
 ) -> list[types.Location]:
-    """Return the elements to which the element at an offset of a file expands.
+    """Return the expansions of the element at an offset of a file.
 
     Args:
         project: the workspace.

@@ -115,7 +115,7 @@ def add_requests(server: LinkwrightServer) -> None:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
         if server.texts() != texts:  # The offsets of the edits refer to the former texts.
-            message = localized(phrase("a text has changed in the meantime; rename again"))
+            message = localized(phrase("a file has changed in the meantime; rename again"))
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.ContentModified))
         notes = [localized(note) for note in renaming.notes]
         if renaming.unchanged:

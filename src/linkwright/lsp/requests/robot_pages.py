@@ -21,7 +21,7 @@ SHOW_ROBOT = "linkwright.showRobot"
 
 
 class PageEditor:
-    """The editor to which the pages of robots report.
+    """The editor that receives the reports of the robots' pages.
 
     It implements `linkwright.lsp.robot_views.TextEditor`.
 

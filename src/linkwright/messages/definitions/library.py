@@ -192,7 +192,7 @@ class Library:
         return None if path is None else read_source(path)
 
     def has_message(self, type_name: str) -> bool:
-        """Return whether a message with a full name exists, even if its file has mistakes."""
+        """Return whether a message with a full name exists, even if its file has errors."""
         package, _, rest = type_name.partition("/")
         if rest in catalog.texts(package) or type_name in self._embedded_sources:
             return True

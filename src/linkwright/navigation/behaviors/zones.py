@@ -172,7 +172,7 @@ class Verdict:
 
 
 def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, ZoneRule, Shape, Points]]) -> Verdict:
-    """Limit a velocity by all zones, and return the lowest velocity that a zone permits, with that zone.
+    """Limit a velocity by all zones, and return the lowest permitted velocity and its zone.
 
     After a zone that stops the robot, the remaining zones are not checked.
 

@@ -87,7 +87,7 @@ def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
 
 
 def place_footprint(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
-    """Return the corners of a footprint at a pose, in the frame in which the pose is given."""
+    """Return the corners of a footprint at a pose, in the frame of the pose."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     corners: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
     return corners

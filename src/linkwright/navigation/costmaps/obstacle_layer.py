@@ -136,7 +136,7 @@ class ObstacleLayer(PersistentLayer):
 
 
 def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArray[np.float64]]:
-    """Return the sensor's cell and the cells in which its clearing rays end.
+    """Return the sensor's cell and the end cells of its clearing rays.
 
     Returns:
         The cell of the sensor, of shape (2,); the cells in which rays end, clipped to the maximum range and without

@@ -18,7 +18,7 @@ def ray_counts(
     ends: NDArray[np.integer[Any]],
     hits: NDArray[np.bool_] | None = None,
 ) -> tuple[Counts, Counts]:
-    """Count the rays that end in each cell, and the rays that pass through each cell.
+    """Count the rays that end in each cell, and the rays through each cell.
 
     Args:
         shape: the rows and columns of the grid; cells outside the grid are ignored.

@@ -140,7 +140,7 @@ class MapLikelihoods:
         return self._cached_table[1]
 
     def _end_cells(self, particles: Poses, ends: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Return the cells in which beams end, of shape (particles, beams).
+        """Return the end cells of beams, shape (particles, beams).
 
         The cells are flat indices into the map with its border.
         """

@@ -41,7 +41,7 @@ from linkwright.nodes.settings import bad_value, positive
 from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
-_COSTMAP_TIMEOUT = 5.0
+_COSTMAP_TIMEOUT_S = 5.0
 """The age in seconds at which a costmap is out of date."""
 _ERROR_CODES = {Outcome.TIMEOUT: "TIMEOUT", Outcome.COLLISION: "COLLISION_AHEAD"}
 _BEHAVIOR_TYPES = {
@@ -254,7 +254,7 @@ class BehaviorNode(ManagedNode):
         """Return the reason why obstacles are unknown, or an empty string if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has been received yet"
-        if self.now_ns() - self._costmap_received_ns > _COSTMAP_TIMEOUT * 1e9:
+        if self.now_ns() - self._costmap_received_ns > _COSTMAP_TIMEOUT_S * 1e9:
             return "the costmap is no longer published"
         return ""
 

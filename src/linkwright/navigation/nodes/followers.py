@@ -110,7 +110,7 @@ def _mppi_parameters(node: Node, plugin: str) -> SamplingParameters:
         deceleration=Velocity(abs(value("ax_min", -3.0)), abs(value("ay_min", -3.0)), value("az_max", 3.5)),
     )
     steps, step = int(get_or_declare(node, f"{plugin}.time_steps", 56)), value("model_dt", 0.05)
-    return SamplingParameters(limits=limits, simulated_seconds=min(steps * step, _MAX_SECONDS))
+    return SamplingParameters(limits=limits, simulated_seconds=min(steps * step, _MAX_DURATION_S))
 
 
 def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
@@ -155,5 +155,5 @@ def _make_checker(node: Node, plugin: str, kind: str, factories: dict[str, Calla
     return factories[kind]()
 
 
-_MAX_SECONDS = 2.0
+_MAX_DURATION_S = 2.0
 """The maximum time for which a motion is simulated, in seconds."""

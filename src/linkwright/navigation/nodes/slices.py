@@ -12,8 +12,8 @@ from typing import Any
 
 from linkwright.graph import Node
 
-SLICE_SECONDS = 0.008
-_WAIT_SECONDS = 0.02
+SLICE_S = 0.008
+_WAIT_S = 0.02
 
 WAIT = "wait"
 """Yielded by a computation that has to wait for an event."""
@@ -58,11 +58,11 @@ class SlicedWork:
             self._work.close()
             self._on_done(None, None)
             return
-        deadline = perf_counter() + SLICE_SECONDS
+        deadline = perf_counter() + SLICE_S
         try:
             while perf_counter() < deadline:
                 if next(self._work) == WAIT:
-                    self._timer = self._node.create_timer(_WAIT_SECONDS, self._resume)
+                    self._timer = self._node.create_timer(_WAIT_S, self._resume)
                     return
         except StopIteration as end:
             self._on_done(end.value, None)

@@ -18,7 +18,7 @@ Step = Generator[None, None, Any]
 """A generator that does one step of work in each cycle."""
 
 _CYCLE_PERIOD_S = 0.05
-_SERVER_TIMEOUT = 5.0
+_SERVER_TIMEOUT_S = 5.0
 """The maximum time to wait for a response of another server, in seconds."""
 
 
@@ -97,7 +97,7 @@ class StepNode(ManagedNode):
         Raises:
             StepError: the condition does not hold in time.
         """
-        deadline_ns = self.now_ns() + round(_SERVER_TIMEOUT * 1e9)
+        deadline_ns = self.now_ns() + round(_SERVER_TIMEOUT_S * 1e9)
         while not is_done():
             if self.now_ns() > deadline_ns:
                 raise StepError("UNKNOWN", f"{server_name} does not answer")

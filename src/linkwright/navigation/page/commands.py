@@ -29,7 +29,7 @@ from linkwright.page.protocol.navigation import (
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.context import ViewerContext
 
-_PERIOD = 1.0
+_PERIOD_S = 1.0
 """The period of the requests to the lifecycle managers, in seconds."""
 
 _ACTION = "navigate_to_pose/_action"
@@ -153,7 +153,7 @@ class _Watch:
     # --- states ------------------------------------------------------------------------------------------------
 
     def _request_states(self) -> None:
-        self._request_timer = asyncio.get_running_loop().call_later(_PERIOD, self._request_states)
+        self._request_timer = asyncio.get_running_loop().call_later(_PERIOD_S, self._request_states)
         for name, client in self._active.items():
             if not client.service_is_ready():
                 self._pending_managers.discard(name)
@@ -217,7 +217,7 @@ class _Watch:
     async def _call(self, client: Client[Any, Any], **fields: Any) -> Any:
         """Return the response of a service, or None if the server disappears before it responds."""
         future = client.call_async(client.srv_type.Request(**fields))
-        while not await wait_for_future(self._node, future, _PERIOD):
+        while not await wait_for_future(self._node, future, _PERIOD_S):
             if not client.service_is_ready():
                 client.remove_pending_request(future)
                 return None

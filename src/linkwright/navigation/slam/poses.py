@@ -44,7 +44,7 @@ def relative_pose(b_in_a: FloatArray, c_in_a: FloatArray) -> FloatArray:
 
 
 def transform_points(pose: FloatArray, points: FloatArray) -> FloatArray:
-    """Transform points from the frame at `pose` to the frame in which `pose` is given.
+    """Transform points from the frame at `pose` to the parent frame of `pose`.
 
     Args:
         pose: the pose of the points' frame, shape (3,).

@@ -1,4 +1,4 @@
-"""Generators that do long work in steps, between which a node can run other callbacks.
+"""Generators that do long work in steps, so that a node can run other callbacks in between.
 
 A function that takes long is a generator: it yields every few milliseconds, and returns its result. A caller that may
 block calls `run_to_end`; other callers call ``next`` when they have time, or ``yield from`` the generator in their own.

@@ -18,7 +18,7 @@ from launch import LaunchContext  # type: ignore[attr-defined, import-not-found,
 
 _TRUE = ("true", "1", "yes", "on")
 _TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
-_RESPAWN_SECONDS = 2.0
+_RESPAWN_S = 2.0
 
 ARGUMENTS: Mapping[str, tuple[str, str]] = {
     "namespace": ("", "Namespace of all nodes"),
@@ -130,7 +130,7 @@ def server_actions(
             remappings=[*_TF, *server.remappings],
             arguments=level,
             respawn=respawn and server.node_name != manager,
-            respawn_delay=_RESPAWN_SECONDS,
+            respawn_delay=_RESPAWN_S,
         )
         for server in all_servers
     ]

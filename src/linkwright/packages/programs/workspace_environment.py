@@ -1,4 +1,4 @@
-"""The environment in which a user's executable finds the same packages as its launcher."""
+"""The environment that lets a user's executable find the same packages as its launcher."""
 
 from __future__ import annotations
 

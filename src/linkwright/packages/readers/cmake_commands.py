@@ -1,4 +1,4 @@
-"""The commands of CMake and of ROS's build tools for which the installed files are known.
+"""The commands of CMake and ROS's build tools with known installed files.
 
 A package may define other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot be
 read here, so the files that they install are not known.

@@ -23,7 +23,7 @@ _BINARY_OPERATORS = frozenset({"MATCHES", "IN_LIST"}) | {
     f"{kind}{order}" for kind in ("", "STR", "VERSION_") for order in _ORDER_TESTS
 }
 _MAX_TOKENS = 200
-_SEARCH_TIMEOUT = 0.2
+_SEARCH_TIMEOUT_S = 0.2
 """The maximum time in seconds to match a regular expression, because it may come from an untrusted file."""
 
 
@@ -171,7 +171,7 @@ def find_matches(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
     import regex
 
     try:
-        matches = regex.finditer(pattern, text, timeout=_SEARCH_TIMEOUT)
+        matches = regex.finditer(pattern, text, timeout=_SEARCH_TIMEOUT_S)
         return [(match[0], [group or "" for group in match.groups()]) for match in matches]
     except (regex.error, TimeoutError, RecursionError):
         return None

@@ -205,7 +205,7 @@ def _compared_item(difference: Difference, old: Robot, new: Robot, pair: Pair) -
 
 
 def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal["link", "joint"], str, bool]:
-    """Return the link or joint to which a difference belongs.
+    """Return the link or joint of a difference.
 
     Returns:
         The kind of the element, its name (empty if there is none), and whether only the old robot has it.

@@ -67,7 +67,7 @@ class SampleQueue:
 
 
 def thin_out(samples: NDArray[Any], max_count: int) -> NDArray[Any]:
-    """Return a limited number of samples whose plot looks nearly the same as that of all samples.
+    """Return a limited number of samples with nearly the same plot as all samples.
 
     The samples are divided into consecutive groups of equal size. The minimum and the maximum of each group are
     selected, in their original order.
@@ -101,7 +101,7 @@ _MAX_PAST_BYTES = 64 << 20
 _QUIET = 0.1
 """Seconds without a jump of time before past samples are read, because dragging causes many jumps."""
 
-_MAX_PAST_SECONDS = 600.0
+_MAX_PAST_S = 600.0
 """The longest duration of past samples that a page may request, in seconds."""
 
 
@@ -271,8 +271,8 @@ class PlotsFeature(PageFeature):
 
     def _watch(self, page: Page, requested: list[PlotSeries], seconds: float) -> None:
         plots = self._pages.setdefault(page, _PagePlots())
-        is_longer = plots.seconds < seconds <= _MAX_PAST_SECONDS
-        plots.seconds = seconds if 0 < seconds <= _MAX_PAST_SECONDS else plots.seconds
+        is_longer = plots.seconds < seconds <= _MAX_PAST_S
+        plots.seconds = seconds if 0 < seconds <= _MAX_PAST_S else plots.seconds
         plotted_series = plots.series
         requested_by_id = {series.id: series for series in requested}
         new_series = {

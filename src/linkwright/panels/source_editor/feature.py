@@ -24,7 +24,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.panels.source_editor.files import FileContent, SourceFiles, with_line_ends
 from linkwright.panels.source_editor.language_process import LanguageProcess
 
-_PERIOD = 0.4
+_PERIOD_S = 0.4
 """Seconds between two checks of the files on the disk."""
 
 
@@ -234,7 +234,7 @@ class SourceEditorFeature(PageFeature):
     async def _watch(self) -> None:
         """Send pages the files that other programs have changed."""
         while True:
-            await asyncio.sleep(_PERIOD)
+            await asyncio.sleep(_PERIOD_S)
             for page, editor in list(self._editors.items()):
                 stamps = {path: known.stamp for path, known in editor.open_files.items()}
                 changed = await asyncio.to_thread(_changed_paths, stamps)

@@ -25,7 +25,7 @@ from linkwright.panels.terminal.terminal import Terminal
 
 MAX_TERMINALS = 16
 
-_GRACE_SECONDS = 0.5
+_GRACE_S = 0.5
 """Seconds for which the programs in a terminal may continue after it was closed."""
 
 _MAX_SIDE = 1000
@@ -124,7 +124,7 @@ class TerminalFeature(PageFeature):
         for terminal in terminals:
             terminal.hang_up()
         for terminal in terminals:
-            terminal.wait_until_ended(_GRACE_SECONDS)
+            terminal.wait_until_ended(_GRACE_S)
 
     def _refusal(self, page: Page) -> Phrase | None:
         if self._folder is None:
@@ -169,13 +169,13 @@ class TerminalFeature(PageFeature):
         terminal = self._find(message.terminal)
         del self._terminals[terminal.number]
         terminal.hang_up()
-        ending = asyncio.get_running_loop().create_task(asyncio.to_thread(terminal.wait_until_ended, _GRACE_SECONDS))
+        ending = asyncio.get_running_loop().create_task(asyncio.to_thread(terminal.wait_until_ended, _GRACE_S))
         self._endings.add(ending)
         ending.add_done_callback(self._endings.discard)
         self._report()
 
     def _own(self, page: Page, message: Any) -> Terminal:
-        """Return the terminal to which a message refers, if the sending page shows this terminal.
+        """Return the terminal that a message names, if the sending page shows this terminal.
 
         Raises:
             _NotShownError: there is no such terminal, or the page does not show it.

@@ -23,7 +23,7 @@ _STARTER = Path(__file__).with_name("take_terminal.py")
 _BLOCK_SIZE = 64 * 1024
 """The largest size of a block of output in bytes."""
 
-_GRACE_SECONDS = 0.5
+_GRACE_S = 0.5
 """The seconds for which the children of a shell may continue after the shell has ended."""
 
 _UTF8_INPUT = 0x4000
@@ -154,7 +154,7 @@ class PosixPty:
         """Wait for the program, end the rest of its session, and report the exit status."""
         if hasattr(os, "waitid"):  # The program is not reaped yet, so no other process can get its ID.
             os.waitid(os.P_PID, self._process.pid, os.WEXITED | os.WNOWAIT)
-            end_session(self._process.pid, _GRACE_SECONDS)
+            end_session(self._process.pid, _GRACE_S)
         status = self._process.wait()
         with suppress(RuntimeError):  # The event loop has ended.
             self._loop.call_soon_threadsafe(self._finish, status)

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 _HAS_PROC = os.path.exists("/proc/self/stat")  # noqa: PTH110 - on Linux; elsewhere, ps is asked
-_PAUSE_SECONDS = 0.02
-_KILLING_SECONDS = 1.0
+_PAUSE_S = 0.02
+_KILLING_S = 1.0
 """The maximum number of seconds for which new processes of a session are killed."""
 
 
@@ -33,12 +33,12 @@ def end_session(leader: int, grace: float) -> None:
         _send(process, signal.SIGHUP)
         _send(process, signal.SIGCONT)  # A stopped process handles SIGHUP only after it has been continued.
     now = time.monotonic()
-    killing, deadline = now + grace, now + grace + _KILLING_SECONDS
+    killing, deadline = now + grace, now + grace + _KILLING_S
     while (remaining := list(session_processes(leader))) and (now := time.monotonic()) < deadline:
         if now >= killing:
             for process in remaining:
                 _send(process, signal.SIGKILL)
-        time.sleep(_PAUSE_SECONDS)
+        time.sleep(_PAUSE_S)
 
 
 def session_processes(leader: int) -> Iterator[int]:

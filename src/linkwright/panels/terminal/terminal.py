@@ -14,7 +14,7 @@ from linkwright.panels.terminal.pty import ExitCallback, OutputCallback, Pty, Te
 MAX_UNACKNOWLEDGED = 16
 """The maximum number of unacknowledged messages with output. No more output is read until pages acknowledge some."""
 
-_PAUSE_SECONDS = 0.005
+_PAUSE_S = 0.005
 """Seconds between two blocks of output.
 
 It joins the output of programs that write a few bytes at a time, and leaves time for the rest of the event loop.
@@ -130,7 +130,7 @@ class Terminal:
 
     def _receive(self, block: bytes) -> None:
         self._add(self._decoder.decode(block))
-        self._pause = asyncio.get_running_loop().call_later(_PAUSE_SECONDS, self._end_pause)
+        self._pause = asyncio.get_running_loop().call_later(_PAUSE_S, self._end_pause)
 
     def _end_pause(self) -> None:
         self._pause = None

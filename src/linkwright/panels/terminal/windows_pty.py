@@ -13,8 +13,8 @@ from typing import Any
 
 from linkwright.panels.terminal.pty import ExitCallback, OutputCallback, TerminalProgram, TerminalSize
 
-_POLL_SECONDS = 0.1
-_DRAIN_SECONDS = 0.3
+_POLL_S = 0.1
+_DRAIN_S = 0.3
 """Seconds for which output is still read after the end of the program."""
 
 
@@ -108,10 +108,10 @@ class WindowsPty:
 
     def _wait(self) -> None:
         while self._is_open and self._pty.isalive():
-            time.sleep(_POLL_SECONDS)
+            time.sleep(_POLL_S)
         self._has_ended.set()
         status = self._pty.get_exitstatus()
-        time.sleep(_DRAIN_SECONDS)
+        time.sleep(_DRAIN_S)
         self._call(self._finish, 0 if status is None else status)
 
     def _finish(self, status: int) -> None:

@@ -118,7 +118,7 @@ class SpeckleFilter(ScanFilter):
 
 
 def _shifted_slices(count: int, shift: int) -> tuple[slice, slice]:
-    """Return two slices that select all pairs of indices, below a count, that differ by a shift."""
+    """Return two slices that select all pairs of indices below a count with a given difference."""
     if abs(shift) >= count:
         return slice(0, 0), slice(0, 0)
     if shift >= 0:

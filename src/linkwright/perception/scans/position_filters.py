@@ -139,7 +139,7 @@ class PolygonFilter(ScanFilter):
             message = phrase(
                 "polygon '{polygon}' must have three or more corners of two numbers each", polygon=self.polygon
             )
-            hint = phrase("write it like '[[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]'")
+            hint = phrase("write a list of points, such as [[0.2, 0.2], [0.2, -0.2], [-0.2, 0.0]]")
             raise LinkwrightError(Diagnostic("NODE433", message, hint=hint))
         corners = np.array(numbers).reshape(-1, 2)
         # Move each coordinate away from the origin, as costmaps pad footprints.

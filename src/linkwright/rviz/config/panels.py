@@ -278,7 +278,7 @@ def write_synchronization(document: Section, synchronization: Synchronization) -
 
 
 def _is_always_on(panel: Section) -> bool:
-    """Return whether RViz 1 up to Noetic wrote the panel, in which synchronization is always on."""
+    """Return whether RViz 1 up to Noetic wrote the panel. Its synchronization is always on."""
     return is_former(_text(panel, "Class")) and not _text(panel, "Experimental") and bool(_text(panel, "SyncSource"))
 
 

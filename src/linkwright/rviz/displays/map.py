@@ -19,7 +19,7 @@ from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha, top
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.topic_display import TOPIC, TRANSFORM, SideTopic, TopicDisplay
 
-_UPDATE_PERIOD = 0.1
+_UPDATE_PERIOD_S = 0.1
 """The minimum time in seconds between two maps that are sent because of updates."""
 
 _UPDATE_TOPIC = "Update Topic"
@@ -69,7 +69,7 @@ _SCHEMA: Schema = (
 
 
 class MapDisplay(TopicDisplay):
-    """A display of an occupancy grid, to which partial updates are applied.
+    """A display of an occupancy grid with partial updates.
 
     By default the map follows its frame. With ``Use Timestamp``, the map stays at the pose that its frame had at the
     map's stamp.
@@ -235,7 +235,7 @@ class MapDisplay(TopicDisplay):
     def _send_soon(self) -> None:
         """Schedule sending the map, so that several updates are sent as one map."""
         if self._send_timer is None:
-            delay = max(0.0, self._last_send_time + _UPDATE_PERIOD - time.monotonic())
+            delay = max(0.0, self._last_send_time + _UPDATE_PERIOD_S - time.monotonic())
             self._send_timer = asyncio.get_running_loop().call_later(delay, self._send_updated)
 
     def _send_updated(self) -> None:

@@ -23,7 +23,7 @@ _NAMESPACES = "Namespaces"
 _MIN_LIFETIME_NS = 100_000
 """A marker whose lifetime in ns is at most this value never expires, as in RViz."""
 
-_EXPIRY_PERIOD = 0.1
+_EXPIRY_PERIOD_S = 0.1
 """Seconds between checks for expired markers while any marker has a lifetime."""
 
 _DUPLICATES_ROW = "Duplicate Marker Check"
@@ -215,7 +215,7 @@ class MarkerDisplay(StoredMarkersDisplay):
 
     def _schedule_expiry(self) -> None:
         if self._expiry_timer is None:
-            self._expiry_timer = asyncio.get_running_loop().call_later(_EXPIRY_PERIOD, self._remove_expired)
+            self._expiry_timer = asyncio.get_running_loop().call_later(_EXPIRY_PERIOD_S, self._remove_expired)
 
     def _remove_expired(self) -> None:
         self._expiry_timer = None

@@ -47,7 +47,7 @@ from linkwright.rviz.displays.cloud_properties import (
     scalar_specs,
 )
 
-_COUNT_PERIOD = 0.25
+_COUNT_PERIOD_S = 0.25
 """Seconds between two updates of the status row with the number of points."""
 
 
@@ -245,7 +245,7 @@ class CloudDisplay(TopicDisplay):
     def _count_points(self) -> None:
         if self._count_timer is None:
             self._report_points()
-            self._count_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, self._on_count_period)
+            self._count_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD_S, self._on_count_period)
 
     def _on_count_period(self) -> None:
         self._count_timer = None

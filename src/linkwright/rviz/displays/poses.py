@@ -188,7 +188,7 @@ class PoseArrayDisplay(RecentDisplay):
 
 
 class ParticleCloudDisplay(RecentDisplay):
-    """A display of the particles of Nav2's AMCL, in which more likely particles are larger."""
+    """A display of the particles of Nav2's AMCL. More likely particles are larger."""
 
     CLASS = "nav2_rviz_plugins/ParticleCloud"
     MESSAGE = "nav2_msgs/msg/ParticleCloud"

@@ -46,7 +46,7 @@ Transforms may arrive exactly at the update rate, but between the due times of u
 them waits slightly less than the previous one.
 """
 
-_AGE_PERIOD = 0.25
+_AGE_PERIOD_S = 0.25
 """Seconds between updates when no transforms arrive, because frames without new transforms must fade."""
 
 _FADE_STEP = 0.02
@@ -341,8 +341,8 @@ class FrameStream:
             self._read_timer = self._loop.call_at(due_time, self._update)
 
     def _check_ages(self) -> None:
-        self._age_timer = self._loop.call_later(_AGE_PERIOD, self._check_ages)
-        is_quiet = self._loop.time() - self._last_read_time > _AGE_PERIOD / 2
+        self._age_timer = self._loop.call_later(_AGE_PERIOD_S, self._check_ages)
+        is_quiet = self._loop.time() - self._last_read_time > _AGE_PERIOD_S / 2
         if is_quiet and self.fade_time is not None and self._ages.any():
             self._schedule_read()
 

@@ -35,7 +35,7 @@ from linkwright.page.protocol.markers import (
 )
 from linkwright.rviz.markers.shapes import BadMarkerError, pose_of, read_marker, unit_quaternion
 
-_CHECK_PERIOD = 0.25
+_CHECK_PERIOD_S = 0.25
 """Seconds between two checks whether the server is available."""
 
 _UPDATE_DEPTH = 100
@@ -113,7 +113,7 @@ class InteractiveMarkerClient:
             self._node.destroy_client(self._client)
 
     def _watch(self) -> None:
-        self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD, self._watch)
+        self._check_timer = asyncio.get_running_loop().call_later(_CHECK_PERIOD_S, self._watch)
         is_ready = self._client.service_is_ready()
         if not is_ready and (self._sequence is not None or self._request is not None):
             self._reset()

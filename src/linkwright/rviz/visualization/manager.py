@@ -312,7 +312,7 @@ class VisualizationManager:
 
     @property
     def fixed_frame(self) -> str:
-        """The Fixed Frame, in which everything is drawn."""
+        """The Fixed Frame, which is the reference frame of the scene."""
         return self._stream.fixed_frame
 
     def _set_option(self, name: str, value: object) -> None:

@@ -199,7 +199,7 @@ def state_entries(world: WorldText, name: str) -> list[Element]:
 
 
 def referenced_name(element: Element, attribute: str | None) -> str:
-    """Return the name to which an element refers, in an attribute or in the text.
+    """Return the name that an element refers to, in an attribute or in its text.
 
     The name is in the text if `attribute` is None.
     """
@@ -418,7 +418,7 @@ def _apply_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Repla
 
 
 def _pose_in_written_frame(world: WorldText, entity: Entity, pose: Pose) -> Pose:
-    """Return a pose in the world, expressed in the frame in which an entity's pose is given.
+    """Return a world pose in the reference frame of an entity's pose.
 
     Raises:
         EditError: this frame does not exist.

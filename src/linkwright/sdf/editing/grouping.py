@@ -89,7 +89,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
 
 
 def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
-    """Return a world in which the nested models of a group are separate models.
+    """Replace a group in a world by its nested models.
 
     The models keep their poses in the world.
 

@@ -154,7 +154,7 @@ def attribute_edits(element: Element, name: str, value: str) -> list[Replacement
 
 
 def reference_edits(element: Element, attribute: str | None, name: str) -> list[Replacement]:
-    """Return the edits that set the name to which an element refers.
+    """Return the edits that set the name in a reference.
 
     The name is in an attribute, or in the text of the element if `attribute` is None.
     """
@@ -174,7 +174,7 @@ def attribute_removal_edits(element: Element, name: str) -> list[Replacement]:
 
 
 def removal_edit(element: Element) -> Replacement:
-    """Return the edit that removes an element, and lines that would become empty."""
+    """Return the edit that removes an element and the lines that become empty."""
     return Replacement(*whole_lines(source_text(element), *element_offsets(element)), "")
 
 

@@ -19,7 +19,7 @@ ByLanguage = Mapping[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Destination:
-    """A place to which the robot can be sent.
+    """A place that the robot can drive to.
 
     Attributes:
         x, y: the position in meters.

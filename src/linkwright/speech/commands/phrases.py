@@ -34,7 +34,7 @@ class TemplateError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A phrase in which each bracket has been replaced by one of its alternatives.
+    """A phrase with one alternative in place of each bracket.
 
     Attributes:
         text: the text of the phrase, with its slots in braces.

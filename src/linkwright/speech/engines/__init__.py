@@ -1,1 +1,1 @@
-"""Adapters for third-party engines, each of which imports its library on demand."""
+"""Adapters for third-party engines. Each imports its library on demand."""

@@ -62,7 +62,7 @@ class Take:
 
 
 class Words:
-    """The words of a user, in the order in which they were enrolled.
+    """The words of a user, in the order of enrollment.
 
     >>> words = Words()
     >>> for samples in recordings: findings = enroll(words, "stop", samples)  # see `enrollment`

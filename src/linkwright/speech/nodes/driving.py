@@ -13,8 +13,8 @@ from linkwright.graph import Node
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.speech.commands.actions import Drive, Values, resolve_amount
 
-_STEP_SECONDS = 0.05
-_MAX_STEP_SECONDS = 0.2
+_STEP_S = 0.05
+_MAX_STEP_S = 0.2
 _MAX_ODOMETRY_AGE = 0.5
 """The maximum age of odometry in s. Without fresh odometry, the distance is computed from the commands."""
 _SPEED_GAIN = 3.0
@@ -53,7 +53,7 @@ class Driver:
         self._drive: Drive | None = None
         self._odometer = _Odometer()
         node.create_subscription("nav_msgs/msg/Odometry", "odom", self._on_odometry, 10)
-        self._timer = node.create_timer(_STEP_SECONDS, self._step, autostart=False)
+        self._timer = node.create_timer(_STEP_S, self._step, autostart=False)
 
     @property
     def is_moving(self) -> bool:
@@ -115,7 +115,7 @@ class Driver:
         if self._drive is None:
             return
         now_ns = self._now_ns()
-        elapsed = min(max((now_ns - self._last_step_ns) * 1e-9, 0.0), _MAX_STEP_SECONDS)
+        elapsed = min(max((now_ns - self._last_step_ns) * 1e-9, 0.0), _MAX_STEP_S)
         self._last_step_ns = now_ns
         if self._remaining is None:
             self._publish(1.0)

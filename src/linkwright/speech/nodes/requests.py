@@ -29,7 +29,7 @@ from linkwright.speech.commands.command_set import Destination
 
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
 _QUEUE_DEPTH = 10
-_EXIT_TIMEOUT = 5.0
+_EXIT_TIMEOUT_S = 5.0
 """The time in s that a launch file has to end before it is killed."""
 
 
@@ -251,7 +251,7 @@ def _format_argument(value: Any) -> str:
 def _wait_or_kill(process: subprocess.Popen[bytes]) -> None:
     """Wait for an interrupted launch file to end, and kill it if it does not."""
     try:
-        process.wait(_EXIT_TIMEOUT)
+        process.wait(_EXIT_TIMEOUT_S)
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()

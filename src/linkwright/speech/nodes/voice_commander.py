@@ -39,11 +39,11 @@ from linkwright.speech.nodes.requests import Requests
 from linkwright.speech.nodes.sound_gaps import SoundGaps
 
 _QUEUE_DEPTH = 10
-_SOURCE_CHECK_SECONDS = 0.5
+_SOURCE_CHECK_S = 0.5
 _STRING = "std_msgs/msg/String"
 _BOOL = "std_msgs/msg/Bool"
 _TEXT_TOPICS = ("text", "partial_text", "command", "response")
-_MAX_MISSING_SECONDS = 0.15
+_MAX_MISSING_S = 0.15
 """The maximum of missing sound, in seconds, in a command that is executed.
 
 Of 480 synthetic enrolled words with gaps of up to this length, none was taken for another word. With gaps of 0.25 s,
@@ -186,7 +186,7 @@ class VoiceCommander(SingleNode):
             _BOOL, "voice/listen", lambda message: self._on_listen(message.data), _QUEUE_DEPTH
         )
         button.watch_lost(lambda _: self._on_listen(False))
-        node.create_timer(_SOURCE_CHECK_SECONDS, self._check_audio_source, clock=clock)
+        node.create_timer(_SOURCE_CHECK_S, self._check_audio_source, clock=clock)
 
     def _on_info(self, info: Any) -> None:
         try:
@@ -250,7 +250,7 @@ class VoiceCommander(SingleNode):
         """
         missing = 0.0 if self._listener is None else self._listener.missing_seconds(result)
         is_certain = result.confidence >= self._min_confidence
-        if is_certain and missing <= _MAX_MISSING_SECONDS and self._execute(result.text, by_voice=True):
+        if is_certain and missing <= _MAX_MISSING_S and self._execute(result.text, by_voice=True):
             return True
         if self._commands.is_stop(result.text) and (self._is_button_held or self._conversation.is_busy):
             self._conversation.stop(result.text)

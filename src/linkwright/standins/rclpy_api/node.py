@@ -98,5 +98,5 @@ class Node(GraphNode):
 
     @property
     def context(self) -> Context:
-        """The context to which the node belongs."""
+        """The node's context."""
         return self.__context

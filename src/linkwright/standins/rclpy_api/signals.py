@@ -58,7 +58,7 @@ def uninstall_signal_handlers() -> None:
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """Return the signals for which handlers are installed."""
+    """Return the signals with installed handlers."""
     return SignalHandlerOptions(
         sum(option for number, option in _OPTION_BY_SIGNAL.items() if number in _previous_handlers)
     )

@@ -73,7 +73,7 @@ class MalformedError(LinkwrightError, ExpatError):
 
 
 class MalformedFileError(MalformedError, DescriptionError):
-    """Raised for a file that is not XML, or that includes such a file.
+    """Raised if a file or an included file is not XML.
 
     Attributes:
         call: the call of xacro with the file to expand.

@@ -23,7 +23,7 @@ class CooperativeLock:
         """Acquire the lock, waiting if necessary, and return whether that succeeded.
 
         Raises:
-            RuntimeError: a thread that does not run in turns would have to wait.
+            RuntimeError: a thread outside lockstep would have to wait.
         """
         if not self._is_locked:
             self._is_locked = True
@@ -32,7 +32,7 @@ class CooperativeLock:
             return False
         thread = current_thread()
         if thread is None:
-            raise RuntimeError("a thread of a program waits while it holds a lock that the graph needs")
+            raise RuntimeError("a thread outside lockstep would wait for a lock that a program holds")
         deadline_ns = None if timeout < 0 else thread.time_after(timeout)
         self._waiting.append(thread)
         try:

@@ -52,7 +52,7 @@ def uninstall(user: object) -> None:
 
 
 def _reading(read: Callable[[LockstepThread], Any]) -> Callable[[Original], Original]:
-    """Return a function that creates the replacement of a function that reads the time."""
+    """Return a function that creates the replacement of a clock function."""
 
     def make(original: Original) -> Original:
         @wraps(original)
@@ -190,7 +190,7 @@ def _lockstep_thread(thread: threading.Thread) -> LockstepThread | None:
 
 
 def _select(original: Original) -> Original:
-    """Return the replacement of the function in which an event loop waits for sockets."""
+    """Return a replacement for an event loop's wait for sockets."""
 
     @wraps(original)
     def select(self: selectors.BaseSelector, timeout: float | None = None) -> Any:

@@ -289,7 +289,7 @@ def _occupied_folder_error(path: Path, *, is_dataset: bool) -> LinkwrightError:
         hint = phrase("use --append to add to it, or --force to replace it")
     else:
         message = phrase("'{folder}' already exists and is not a dataset", folder=folder)
-        hint = phrase("name an empty or new folder")
+        hint = phrase("pass an empty or new folder")
     return LinkwrightError(Diagnostic("VISION205", message, hint=hint))
 
 

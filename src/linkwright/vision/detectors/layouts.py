@@ -196,7 +196,7 @@ def _extra_values(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[
 def _possible_forms(
     shape: Sequence[int], size: tuple[int, int], extra_values: int, *, is_suppressed: bool
 ) -> list[tuple[BoxArrangement, int]]:
-    """Return the forms that an output's shape allows, with their class counts, likeliest first."""
+    """Return the forms that an output's shape allows, with their class counts, the most likely first."""
     batch, first, second = shape
     if batch != 1:
         return []

@@ -34,7 +34,7 @@ _MAX_STAMP_DIFFERENCE_NS = 500_000_000
 _RELIABLE = 1
 _MILLIMETERS = 1000
 _WARNING_PERIOD_S = 5.0
-_MARKER_LIFETIME_SECONDS = 1
+_MARKER_LIFETIME_S = 1
 _LABEL_HEIGHT_M = 0.12
 _FORWARD_IN_OPTICAL = (0.5, -0.5, 0.5, 0.5)
 """The orientation, in an optical frame, of axes with x forward and z up, as a quaternion."""
@@ -206,7 +206,7 @@ def _make_markers(form: DetectionFormat, detection_array: Any, positions: list[O
             marker_class(header=detection_array.header, ns=ns, id=index, type=shape, action=marker_class.ADD)
             for ns, shape in (("boxes", marker_class.CUBE), ("labels", marker_class.TEXT_VIEW_FACING))
         )
-        box.lifetime.sec = label.lifetime.sec = _MARKER_LIFETIME_SECONDS
+        box.lifetime.sec = label.lifetime.sec = _MARKER_LIFETIME_S
         box.pose, box.scale = box_3d.center, box_3d.size
         label_position, box_center = label.pose.position, box_3d.center.position
         label_position.x, label_position.y, label_position.z = (

@@ -9,7 +9,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.graph import Clock, ClockType, Node, QoSProfile, ReliabilityPolicy
 from linkwright.images import ImageSource
 
-_PERIOD_SECONDS = 5.0
+_PERIOD_S = 5.0
 _IMAGE_TYPES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 _MAX_TOPICS = 5
 
@@ -37,7 +37,7 @@ class ImageWatch:
         self._quiet, self._allowed_periods = 0, 1  # both in timer periods
         # Use the steady clock: simulated time may be paused, which would delay the warning.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        node.create_timer(_PERIOD_SECONDS, self._check_images, clock=clock)
+        node.create_timer(_PERIOD_S, self._check_images, clock=clock)
 
     def record_image(self) -> None:
         """Record that an image has arrived."""
@@ -86,7 +86,7 @@ class ImageWatch:
                 "requests reliable",
                 topic=topic,
             ), phrase("set '{parameter}' to {value}", parameter="image_reliability", value=2)
-        seconds = round(_PERIOD_SECONDS * self._quiet)
+        seconds = round(_PERIOD_S * self._quiet)
         return phrase("no image has arrived on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
 
     def _suggest_topics(self) -> Phrase | None:

@@ -37,11 +37,11 @@ from linkwright.vision.places.object_requests import (
 from linkwright.vision.places.seeking import Observation, Phase, Seeker, SeekSettings
 
 _QUEUE_DEPTH = 10
-_STEP_SECONDS = 0.05
+_STEP_S = 0.05
 _MAX_SAME_OBJECT_DISTANCE = 0.6
 """The maximum distance in m at which a detection with a new ID is still the same object."""
-_MAX_DETECTION_AGE_SECONDS = 1.0
-_MAX_SCAN_AGE_SECONDS = 1.0
+_MAX_DETECTION_AGE_S = 1.0
+_MAX_SCAN_AGE_S = 1.0
 
 
 class ObjectSeeker(SingleNode):
@@ -84,7 +84,7 @@ class ObjectSeeker(SingleNode):
                 self._commander.watch(node.create_subscription(text, topic + name, callback, _QUEUE_DEPTH))
             describe_in_language = partial(self._describe, language or self._language)
             node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", describe_in_language)
-        node.create_timer(_STEP_SECONDS, self._step)
+        node.create_timer(_STEP_S, self._step)
 
     def close(self) -> None:
         """Stop the robot, and close the node."""
@@ -153,7 +153,7 @@ class ObjectSeeker(SingleNode):
 
     def _describe(self, language: str, _request: Any, response: Any) -> Any:
         pose = self._poses.pose(self._fixed, self._base, 0)
-        oldest_ns = self._now_ns() - round(_MAX_DETECTION_AGE_SECONDS * 1e9)
+        oldest_ns = self._now_ns() - round(_MAX_DETECTION_AGE_S * 1e9)
         if (
             pose is None
             or self._seen_objects.last_detections_ns is None
@@ -253,7 +253,7 @@ class ObjectSeeker(SingleNode):
         scan = self._scan
         if scan is None:
             return inf
-        if now_ns - scan.header.stamp.nanoseconds > _MAX_SCAN_AGE_SECONDS * 1e9:
+        if now_ns - scan.header.stamp.nanoseconds > _MAX_SCAN_AGE_S * 1e9:
             return 0.0
         pose = self._poses.pose(self._base, scan.header.frame_id, 0)
         if pose is None:

@@ -8,7 +8,7 @@ from math import inf, pi
 
 from linkwright.vision.places.object_requests import Answer
 
-_MAX_AGE_SECONDS = 0.5
+_MAX_AGE_S = 0.5
 """The maximum age of a detection of an object that counts as visible now, seconds."""
 _SEARCH_ANGLE = 2 * pi + 0.3
 """The angle in rad through which the robot turns to search: a full turn and 0.3 rad of overlap."""
@@ -142,7 +142,7 @@ class Seeker:
         return self._approach(observation)
 
     def _turn_and_look(self, observation: Observation) -> Command:
-        if observation.age < _MAX_AGE_SECONDS:
+        if observation.age < _MAX_AGE_S:
             is_first = not self._was_found
             self.phase = Phase.APPROACHING
             command = self._approach(observation)

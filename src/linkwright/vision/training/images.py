@@ -44,7 +44,7 @@ def read_image(labeled: LabeledFile) -> NDArray[np.uint8]:
     data: NDArray[np.uint8] = np.fromfile(labeled.path, np.uint8)
     pixels: Any = cv2.imdecode(data, cv2.IMREAD_COLOR) if data.size else None
     if pixels is None:
-        message = phrase("'{path}' is not an image, or is broken", path=display_path(labeled.path))
+        message = phrase("'{path}' is damaged or is not an image", path=display_path(labeled.path))
         raise LinkwrightError(Diagnostic("VISION305", message))
     rgb: NDArray[np.uint8] = np.ascontiguousarray(pixels[..., ::-1])
     return rgb

@@ -26,7 +26,7 @@ GRACE_S = 0.4
 WITHDRAWAL_TIMEOUT_S = 1.0
 """Seconds after an endpoint disappears within which the announcement of its withdrawal may still arrive."""
 
-POLL_SECONDS = 0.2
+POLL_S = 0.2
 """The interval, in seconds, between two checks of the processes."""
 
 
@@ -103,7 +103,7 @@ class DdsDepartureMonitor:
             return None
         self._check_missing_writers()
         processes = self._check_processes()
-        return POLL_SECONDS if self._missing_writers or processes else None
+        return POLL_S if self._missing_writers or processes else None
 
     def _check_missing_writers(self) -> None:
         now, undecided = self._now(), []

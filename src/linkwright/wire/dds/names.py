@@ -25,7 +25,7 @@ _ROLES = {role.value: role for role in Role}
 
 @dataclass(frozen=True, slots=True)
 class RosName:
-    """The ROS name to which a DDS topic belongs.
+    """The ROS name of a DDS topic.
 
     Attributes:
         role: the role of the topic.

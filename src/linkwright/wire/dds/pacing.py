@@ -261,7 +261,7 @@ class PacedWriter:
             self._waiting.clear()
 
     def _paced_addresses(self, sample: bytes) -> dict[bytes, Address]:
-        """Return the addresses to which a sample is paced.
+        """Return the paced destination addresses of a sample.
 
         The result is empty if the sample fits into one packet.
         """

@@ -35,7 +35,7 @@ class QuietReader(MirroredTopic):
     Writers send it only samples that other readers in this process also receive.
     """
 
-    _STATUS = 0
+    _STATUS_MASK = 0
     writer_guids: Sequence[bytes] = ()
 
     def __init__(self, presence: Presence, domain: Domain) -> None:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 _PUBLISH_TIMEOUT_S = 2 * LEASE
 """Seconds for which a publisher with KEEP_ALL waits for slow readers."""
 
-_NAMELESS = "a node whose name is not known"
+_UNNAMED = "a node whose name is not known"
 
 MAX_SAMPLES = 256
 """The maximum number of samples that are taken before other readers are served."""
@@ -89,7 +89,7 @@ class MirroredTopic(ABC):
         on_mismatch: called when an endpoint of another process has incompatible QoS.
     """
 
-    _STATUS: int
+    _STATUS_MASK: int
     """The mask of the statuses that `on_status` handles."""
 
     def __init__(self, endpoint: Endpoint, domain: Domain, on_mismatch: Callable[[Any], None]) -> None:
@@ -105,7 +105,7 @@ class MirroredTopic(ABC):
             self.entity = self._create(qos)
         self.guid = self._dds.guid(self.entity)
         endpoint.gid = self.guid
-        self._dds.dds_set_status_mask(self.entity, self._STATUS)
+        self._dds.dds_set_status_mask(self.entity, self._STATUS_MASK)
         self._log_limits = _LogLimits()
 
     def _describe_type(self, endpoint: Endpoint, domain: Domain) -> tuple[Any, bytes]:
@@ -142,7 +142,7 @@ class OutgoingTopic(MirroredTopic):
         on_waiting: called when messages are queued, so that `write_queued` must be called again soon.
     """
 
-    _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
+    _STATUS_MASK = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
 
     def __init__(
         self,
@@ -167,7 +167,7 @@ class OutgoingTopic(MirroredTopic):
         Returns False, because a writer has no samples to take.
         """
         status = c.c_uint32()
-        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS)
+        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS_MASK)
         match_status = MatchedStatus()
         if self._dds.dds_get_publication_matched_status(self.entity, c.byref(match_status)) >= 0:
             is_needed = self._is_transient_local or match_status.current_count > 0
@@ -178,7 +178,7 @@ class OutgoingTopic(MirroredTopic):
         return False
 
     def write_queued(self) -> bool:
-        """Write the samples that need not wait for acknowledgments any longer.
+        """Write the samples that no longer need to wait for acknowledgments.
 
         Returns whether samples are still queued.
         """
@@ -314,7 +314,12 @@ class OutgoingTopic(MirroredTopic):
 
         Further failures are logged only after some time.
         """
-        if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._log_limits.is_due("failed"):
+        if (
+            code >= 0
+            or self._participant.closed
+            or self._publisher.destroyed
+            or not self._log_limits.take_turn("failed")
+        ):
             return
         reason = "the subscriptions in other processes do not keep up" if code == TIMEOUT else describe(code)
         self._publisher.node.logger.warning(
@@ -331,15 +336,15 @@ class OutgoingTopic(MirroredTopic):
         for reader in self._remote.topic_endpoints(self.topic_name, writers=False):
             policies = incompatible_policies(offered, reader.qos)
             name = self._remote.node_name(reader)
-            if policies and (name or include_unnamed) and self._log_limits.is_new(reader.guid):
-                sides = describe_mismatch(self._publisher.node_name, offered, name or _NAMELESS, reader.qos, policies)
+            if policies and (name or include_unnamed) and self._log_limits.mark_seen(reader.guid):
+                sides = describe_mismatch(self._publisher.node_name, offered, name or _UNNAMED, reader.qos, policies)
                 report_to_publisher(self._publisher, policies[-1].name, sides)
 
 
 class IncomingTopic(MirroredTopic):
     """A subscription's reader. See `MirroredTopic` for the arguments."""
 
-    _STATUS = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
+    _STATUS_MASK = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
 
     def __init__(self, subscription: Subscription[Any], domain: Domain, on_mismatch: Callable[[Any], None]) -> None:
         super().__init__(subscription, domain, on_mismatch)
@@ -351,7 +356,7 @@ class IncomingTopic(MirroredTopic):
         Returns whether there are more samples.
         """
         status = c.c_uint32()
-        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS & ~DATA_AVAILABLE)
+        self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS_MASK & ~DATA_AVAILABLE)
         if status.value:
             self._on_change(status.value)
         return self._receive()
@@ -417,9 +422,9 @@ class IncomingTopic(MirroredTopic):
         for writer in self._remote.topic_endpoints(self.topic_name, writers=True):
             policies = incompatible_policies(writer.qos, requested)
             name = self._remote.node_name(writer)
-            if policies and (name or include_unnamed) and self._log_limits.is_new(writer.guid):
+            if policies and (name or include_unnamed) and self._log_limits.mark_seen(writer.guid):
                 sides = describe_mismatch(
-                    name or _NAMELESS, writer.qos, self._subscription.node_name, requested, policies
+                    name or _UNNAMED, writer.qos, self._subscription.node_name, requested, policies
                 )
                 report_to_subscription(self._subscription, policies[-1].name, sides)
 
@@ -433,8 +438,8 @@ class _LogLimits:
         self._guids: set[bytes] = set()
         self._logged: dict[str, float] = {}
 
-    def is_new(self, guid: bytes) -> bool:
-        """Return whether this is the first call for an endpoint.
+    def mark_seen(self, guid: bytes) -> bool:
+        """Remember an endpoint, and return whether this is the first call for it.
 
         The mismatch must then be logged.
         """
@@ -442,8 +447,8 @@ class _LogLimits:
         self._guids.add(guid)
         return is_new
 
-    def is_due(self, key: str) -> bool:
-        """Return whether a message should be logged, for the first time or again after some time."""
+    def take_turn(self, key: str) -> bool:
+        """Return whether to log a message now, and remember the time if so."""
         now = time.monotonic()
         is_due = now - self._logged.get(key, -self._LOG_INTERVAL_S) >= self._LOG_INTERVAL_S
         if is_due:

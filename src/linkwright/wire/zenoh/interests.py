@@ -1,4 +1,4 @@
-"""The liveliness tokens to which a session subscribes.
+"""The liveliness tokens that a session subscribes to.
 
 The router sends every token to each session that subscribes to all tokens. This traffic grows with the square of the
 number of robots. Therefore, a client of a router, such as a robot, subscribes only to the tokens that its own nodes and
@@ -22,7 +22,7 @@ KEY_PREFIX = "@linkwright"
 
 
 class Interests:
-    """The tokens to which a session subscribes.
+    """The tokens that a session subscribes to.
 
     After `__init__`, only one thread may use this.
 

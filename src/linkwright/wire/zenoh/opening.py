@@ -132,7 +132,7 @@ def _try_open(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
 
 
 def _wait_seconds(config: zenoh.Config) -> float:
-    """Return the seconds for which a configuration lets a new session wait for a connection."""
+    """Return how long a new session waits for a connection according to a configuration, in seconds."""
     is_client = mode_value(config, "mode", default="peer") == "client"
     if not configured_addresses(config) or not mode_value(config, "connect/exit_on_failure", default=is_client):
         return 0.0

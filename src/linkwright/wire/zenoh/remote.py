@@ -12,7 +12,7 @@ from linkwright.graph.names.rules import NodeIdentity
 from linkwright.wire.remote_entities import RemoteEntities
 from linkwright.wire.zenoh.tokens import Token
 
-_READD_DELAY_SECONDS = 0.5
+_READD_DELAY_S = 0.5
 """Seconds for which a removed token is not added again. Zenoh retries broken links only after one second."""
 
 
@@ -52,7 +52,7 @@ class RemoteGraph(RemoteEntities):
         If a session requests tokens that it already knows, Zenoh answers in a separate task, and the report of a
         token's end may overtake the answer. A token that reappears after a broken connection takes longer.
         """
-        return key in self._removal_times and time.monotonic() - self._removal_times[key] < _READD_DELAY_SECONDS
+        return key in self._removal_times and time.monotonic() - self._removal_times[key] < _READD_DELAY_S
 
     def remove(self, key: str) -> Token | None:
         """Remove a token and return it, or None if the token was not known."""
@@ -60,7 +60,7 @@ class RemoteGraph(RemoteEntities):
         for expired_key in [
             removed_key
             for removed_key in islice(self._removal_times, 2)
-            if now - self._removal_times[removed_key] > _READD_DELAY_SECONDS
+            if now - self._removal_times[removed_key] > _READD_DELAY_S
         ]:
             del self._removal_times[expired_key]  # removing two per call keeps the table small
         self._removal_times.pop(key, None)

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 SETTLE_TIME_S = 0.4
 """Seconds without changes after which discovery counts as complete, if another session is connected."""
 
-_ANSWERED_WITHIN = 2.0
+_ANSWER_TIMEOUT_S = 2.0
 """Seconds within which the router answers with the live tokens. The first query waits for the answer."""
 
 _QUIET = 0.1
 """Seconds without new tokens after which the answer counts as complete."""
 
-_ALONE_AFTER = 1.4
+_ALONE_TIMEOUT_S = 1.4
 """The same, if there is no router. Other sessions are asked immediately, and again after a second."""
 
 
@@ -64,14 +64,14 @@ class ZenohTransport(BackgroundTransport):
             was_discovering, self._is_discovering = self._is_discovering, True
         if was_discovering:
             if must_wait and not self._discovery_done.is_set():
-                self._discovery_done.wait(_ANSWERED_WITHIN)
+                self._discovery_done.wait(_ANSWER_TIMEOUT_S)
             return
         answered = Event()
-        self._do(lambda engine: cast("ZenohEngine", engine).start_discovery(_ANSWERED_WITHIN, answered.set))
+        self._do(lambda engine: cast("ZenohEngine", engine).start_discovery(_ANSWER_TIMEOUT_S, answered.set))
         if must_wait:  # if not waiting, the remote graph arrives step by step
             self._wait_for_answer(answered)
             self._do(self._process_tokens)
-            self._discovery_done.wait(_ANSWERED_WITHIN)
+            self._discovery_done.wait(_ANSWER_TIMEOUT_S)
         self._discovery_done.set()
 
     @property
@@ -84,9 +84,9 @@ class ZenohTransport(BackgroundTransport):
 
         Some tokens may arrive late.
         """
-        answered.wait(_ANSWERED_WITHIN)
+        answered.wait(_ANSWER_TIMEOUT_S)
         start = time.monotonic()
-        while time.monotonic() < min(start + _ANSWERED_WITHIN, max(self._remote.changed_at, start) + _QUIET):
+        while time.monotonic() < min(start + _ANSWER_TIMEOUT_S, max(self._remote.changed_at, start) + _QUIET):
             time.sleep(_QUIET / 10)
 
     def _process_tokens(self, engine: Engine) -> None:
@@ -106,6 +106,6 @@ class ZenohTransport(BackgroundTransport):
     def _has_settled(self, quiet: float) -> bool:
         engine = self._zenoh_engine
         if engine is None or not engine.has_neighbors():
-            return quiet >= _ALONE_AFTER
+            return quiet >= _ALONE_TIMEOUT_S
         self._connected_at = self._connected_at or time.monotonic()
         return min(quiet, time.monotonic() - self._connected_at) >= SETTLE_TIME_S

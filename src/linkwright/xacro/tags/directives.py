@@ -222,7 +222,7 @@ def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
 
 
 def _target_scope(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
-    """Return the scope in which to define a property, and whether it is the tag's scope."""
+    """Return the scope for a property, and whether it is the tag's scope."""
     scope_name = node.attributes.get("scope")
     if scope_name == "global":
         return scope.document_scope(), False

@@ -90,7 +90,7 @@ def examine_arguments(inputs: Inputs) -> Arguments:
 
 
 class _Session(TracedSession):
-    """A session in which no argument is missing.
+    """A session without missing arguments.
 
     Attributes:
         documents: the document of every file that was read, by path.

@@ -1,4 +1,4 @@
-"""The names to which a text with expressions refers, and the origin of each name's value."""
+"""The names that a text with expressions refers to, and the origin of each name's value."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ class UnsetEnvironmentVariable(NamedAction):
 
 @expose_action("append_env")
 class AppendEnvironmentVariable(AssigningAction):
-    """An action that adds a value to an environment variable that contains a list, such as a search path.
+    """An action that adds a value to a list in an environment variable, such as a search path.
 
     Args:
         name: the name of the variable.

@@ -369,7 +369,7 @@ class ExecuteProcess(ExecuteLocal):
         return parse_command_line(cmd, parser)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start the process, or the Linkwright node that replaces a program that is not installed.
+        """Start the process, or the Linkwright node that replaces a missing program.
 
         Raises:
             RuntimeError: LAUNCH141, the process was started before.
@@ -426,7 +426,7 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def cwd(self) -> Any:
-        """The folder in which the process runs, or substitutions before evaluation."""
+        """The working folder of the process, or its substitutions before evaluation."""
         return self._description.final_cwd or self._description.cwd
 
     @property

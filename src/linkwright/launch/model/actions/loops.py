@@ -99,7 +99,7 @@ class ForEach(Action):
 
 @expose_action("for")
 class ForLoop(Action):
-    """An action that calls a function for each index from 0, and visits the entities that the function returns.
+    """An action that calls a function for each index from 0, and visits the returned entities.
 
     Args:
         length: the number of iterations.

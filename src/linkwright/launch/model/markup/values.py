@@ -226,7 +226,7 @@ def read_boolean(value: Any) -> Any:
 
 
 def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
-    """Return a value in which the substitutions are normalized to lists of substitutions.
+    """Normalize the substitutions in a value to lists of substitutions.
 
     A list of strings and substitutions is one value: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
 

@@ -21,7 +21,7 @@ _LOCAL_PREFIX = "ForEachVar__"
 
 
 def local_name(name: str) -> str:
-    """Return the name of the local in which the launch context stores a value of a loop."""
+    """Return the name of the launch context's local for a value of a loop."""
     return _LOCAL_PREFIX + name
 
 
@@ -43,7 +43,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
     @staticmethod
     def get_local_arg_name(name: str) -> str:
-        """Return the name of the local in which the launch context stores the value."""
+        """Return the name of the launch context's local for the value."""
         return local_name(name)
 
     def perform(self, context: LaunchContext) -> str:

@@ -274,7 +274,7 @@ def _mark_skipped(item: pytest.Function) -> pytest.Function:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Sort the tests so that tests after a launch follow all tests that run during it."""
+    """Sort the tests: first the tests during a launch, then the tests after it."""
     last_index = {
         item.launch_key: index
         for index, item in enumerate(items)

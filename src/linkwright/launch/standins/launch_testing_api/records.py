@@ -21,7 +21,7 @@ from linkwright.launch.standins.launch_testing_api.processes import (
 
 
 class IoHandler:
-    """The output of processes in the order in which it was written."""
+    """The output of processes in the order of writing."""
 
     def __init__(self) -> None:
         self._all: list[events.ProcessIO] = []

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 _QUEUE_DEPTH = 10
-_SPIN_SECONDS = 0.1
-_STOP_TIMEOUT_SECONDS = 5.0
+_SPIN_S = 0.1
+_STOP_TIMEOUT_S = 5.0
 
 
 class LaunchTestRunner(_LaunchTestRunner):
@@ -157,7 +157,7 @@ class MessagePump:
             Exception: a callback does not return in time.
         """
         self._stop_requested.set()
-        self._thread.join(timeout=_STOP_TIMEOUT_SECONDS)
+        self._thread.join(timeout=_STOP_TIMEOUT_S)
         if self._thread.is_alive():
             raise Exception("Timed out waiting for message pump to stop")  # noqa: TRY002 - launch_testing_ros raises it
 
@@ -165,7 +165,7 @@ class MessagePump:
         executor = SingleThreadedExecutor(context=self._context)
         executor.add_node(self._node)
         while not self._stop_requested.is_set():
-            executor.spin_once(timeout_sec=_SPIN_SECONDS)
+            executor.spin_once(timeout_sec=_SPIN_S)
 
 
 class DataRepublisher:

@@ -12,7 +12,7 @@ from linkwright.launch.model.actions.testing import ReadyToTest, find_ready_acti
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
 
-_READY_SECONDS = 15.0
+_READY_S = 15.0
 """The default maximum time in seconds from the start of a launch until its tests may start."""
 
 
@@ -44,7 +44,7 @@ class TestRun:
         self.param_args = dict(param_args)
         self.pre_shutdown_tests = pre_shutdown_tests
         self.post_shutdown_tests = post_shutdown_tests
-        self.timeout: float = getattr(test_description_function, TIMEOUT, _READY_SECONDS)
+        self.timeout: float = getattr(test_description_function, TIMEOUT, _READY_S)
         self._test_description_function = test_description_function
         self._cases = [
             *_iterate_cases(pre_shutdown_tests),

@@ -219,7 +219,7 @@ def _read_sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings
     return sensor
 
 
-_CONTROL_TIMEOUT = 0.2
+_CONTROL_TIMEOUT_S = 0.2
 """The documented default in seconds. The code of robot_localization has 0, which ignores every command."""
 _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
@@ -230,7 +230,7 @@ def _read_control(node: Node, sensors: Sequence[SensorSettings]) -> Control | No
     All parameters are declared even if unused, so that they are not reported as unknown.
     """
     uses_control: bool = node.declare_parameter("use_control", False).value
-    timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT).value
+    timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT_S).value
     node.declare_parameter("stamped_control", False)
     used = _read_flags(node, "control_config", 6)
     acceleration_limits = _read_numbers(node, "acceleration_limits", (6,)) or [1.0] * 6

@@ -38,7 +38,7 @@ from linkwright.navigation.slam.scan import PlanarScan, planar_scan
 from linkwright.navigation.slam.steps import Steps
 from linkwright.navigation.slam.storage import graph_path, load_graph
 
-_LOOKUP_PERIOD = 0.05
+_LOOKUP_PERIOD_S = 0.05
 """The seconds between lookups of a transform that a scan waits for, if no transforms are published."""
 _MAX_QUIET_QUEUE = 10
 _WARNING_PERIOD_S = 5.0
@@ -103,7 +103,7 @@ class Toolbox:
         scan_type = get_message("sensor_msgs/msg/LaserScan")
         self._is_active = [
             node.create_subscription(scan_type, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS),
-            node.create_timer(settings.transform_period or _LOOKUP_PERIOD, self._on_timer),
+            node.create_timer(settings.transform_period or _LOOKUP_PERIOD_S, self._on_timer),
             node.create_timer(settings.map_update_interval, self.publish_map),
         ]
         backward_jump = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)

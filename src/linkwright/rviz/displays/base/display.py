@@ -112,7 +112,7 @@ class ViewerDisplay:
 
     @classmethod
     def topic_value(cls, topic: str) -> str:
-        """Return the value to which the property `TOPIC` must be set to show a topic."""
+        """Return the value of the property `TOPIC` that shows a topic."""
         return topic
 
     @property

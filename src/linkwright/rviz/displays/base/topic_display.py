@@ -88,10 +88,10 @@ TRANSFORM = "Transform"
 _FAILURE_ROW = "Failure"
 """The status row for a message that the display cannot process. RViz has no such row."""
 
-_LATE_TIMEOUT = 1.0
+_LATE_TIMEOUT_S = 1.0
 """Seconds to wait for the transforms of a message, which often arrive later, before an error is reported."""
 
-_COUNT_PERIOD = 1.0
+_COUNT_PERIOD_S = 1.0
 """Seconds between two updates of the row with the number of messages or the reason why there are none."""
 
 _WEAKEST_POLICIES = {
@@ -348,7 +348,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._report_count()
 
         if self._report_timer is None:
-            self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD, report)
+            self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD_S, report)
 
     def _silence_reason(self) -> Phrase:
         """Return the reason why no messages arrive.
@@ -435,7 +435,7 @@ class TopicDisplay(DataDisplay, ABC):
             return
         self._late_reason = self._add_clock_advice(reason, stamp_ns)
         if self._late_timer is None:
-            self._late_timer = asyncio.get_running_loop().call_later(_LATE_TIMEOUT, self._report_late)
+            self._late_timer = asyncio.get_running_loop().call_later(_LATE_TIMEOUT_S, self._report_late)
 
     def _add_clock_advice(self, reason: Phrase, stamp_ns: int) -> Phrase:
         """Return the reason, preceded by advice on clocks if the stamp is far from the local time."""

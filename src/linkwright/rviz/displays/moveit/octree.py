@@ -54,7 +54,7 @@ class Cells:
     probabilities: NDArray[np.float64]
 
     def chosen(self, mask: NDArray[np.bool_]) -> Cells:
-        """Return the cells for which a boolean mask of shape (N,) is True."""
+        """Return the cells that a boolean mask of shape (N,) selects."""
         return Cells(self.centers[mask], self.sizes[mask], self.probabilities[mask])
 
 

@@ -208,7 +208,7 @@ class PosableRobot:
         }
 
     def frame_of(self, state: JointPositions) -> str:
-        """Return the frame to which the link poses of a state are relative."""
+        """Return the reference frame of the link poses of a state."""
         return state.frame or self.root
 
     def markers(self, state: JointPositions, look: Look) -> list[MarkerShape]:

@@ -1,4 +1,4 @@
-"""A planning scene, to which messages with changes are applied."""
+"""A planning scene that messages change."""
 
 from __future__ import annotations
 

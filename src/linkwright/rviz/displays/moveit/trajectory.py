@@ -94,7 +94,7 @@ def _seconds(duration: Any) -> float:
 
 
 def display_seconds(text: str, duration: float) -> float:
-    """Return the time for which a state is shown, in seconds.
+    """Return how long a state is shown, in seconds.
 
     Args:
         text: the value of the property State Display Time.

@@ -255,7 +255,7 @@ def data(reader: bytes, writer: bytes, sequence_number: int, payload: bytes | No
 
 
 def fragment_count(payload: bytes) -> int:
-    """Return the number of fragments into which a payload is divided."""
+    """Return the number of fragments of a payload."""
     return (len(payload) + FRAGMENT - 1) // FRAGMENT
 
 
