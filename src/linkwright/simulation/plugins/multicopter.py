@@ -23,7 +23,6 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.single import Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
-from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.entities import vector_components
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -281,9 +280,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
     def _motors(self) -> dict[str, GzMulticopterMotor]:
         """Return the motors of the model that have started, by the names of their joints."""
         if len(self._rotors) < len(self._joints):  # the other motors have not started yet
-            plugins = self._environment.plugins(self.context.path.partition(SEPARATOR)[0])
             motors = [
-                simulated_plugin for simulated_plugin in plugins if isinstance(simulated_plugin, GzMulticopterMotor)
+                simulated_plugin
+                for simulated_plugin in self.model_plugins
+                if isinstance(simulated_plugin, GzMulticopterMotor)
             ]
             self._rotors = {self.joint(motor.parameters.joint_name): motor for motor in motors}
         return self._rotors

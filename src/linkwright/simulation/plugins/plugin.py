@@ -243,6 +243,11 @@ class SimulatedPlugin(Generic[P]):
         top_model, _, _ = self.context.path.partition(SEPARATOR)
         return self.simulation.scene.models[top_model].structure.links[0].link.name
 
+    @property
+    def model_plugins(self) -> tuple[SimulatedPlugin[Any], ...]:
+        """The running plugins and sensors of the top-level model that contains the plugin."""
+        return self._environment.plugins(self.context.path.partition(SEPARATOR)[0])
+
     def parameter_error(self, message: Phrase) -> LinkwrightError:
         """Return the error SIM160, to raise in `start` for contradictory parameters.
 
