@@ -93,7 +93,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         self._motor = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
         self.simulation.keep_awake(self._link)
         self.reset()
-        namespace = _text(self.context.element, "robotNamespace").strip("/") or self.context.path
+        namespace = self.text_in(self.context.element, "robotNamespace").strip("/") or self.context.path
         self.node.subscribe(
             "actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic}", self._on_actuators
         )
@@ -172,7 +172,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._find_rotors(element)
         self._rotors: dict[str, GzMulticopterMotor] = {}
         self.reset()
-        namespace = _text(element, "robotNamespace").strip("/")
+        namespace = self.text_in(element, "robotNamespace").strip("/")
         topic_prefix = f"/{namespace}/" if namespace else "/"
         commander = self.node.commander(self._stop_motion)
         twist_type = "geometry_msgs/msg/Twist"
@@ -204,7 +204,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         columns = []
         self._joints = []
         for rotor in rotors:
-            joint = self.joint(_text(rotor, "jointName"))
+            joint = self.joint(self.text_in(rotor, "jointName"))
             rotor_position = body_rotation.T @ (
                 np.array(simulation.link_pose(simulation.scene.joints[joint].child)[:3]) - body_pose[:3]
             )
@@ -319,8 +319,3 @@ def _attitude(rotation: Array, acceleration: Array) -> Array:
     left = np.cross(up, heading)
     left /= np.linalg.norm(left)
     return np.column_stack((np.cross(left, up), left, up))
-
-
-def _text(element: Element | None, tag: str) -> str:
-    child = None if element is None else element.first(tag)
-    return "" if child is None else child.text().strip()

@@ -258,6 +258,12 @@ class SimulatedPlugin(Generic[P]):
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
+    @staticmethod
+    def text_in(parent: Element | None, tag: str) -> str:
+        """Return the text in a child of one of the plugin's nested elements, or an empty text for an absent child."""
+        child = None if parent is None else parent.first(tag)
+        return "" if child is None else child.text().strip()
+
     def number_in(self, parent: Element | None, tag: str, default: float | None = None) -> float:
         """Return the number in a child of one of the plugin's nested elements, for which `PARAMETERS` has no field.
 
