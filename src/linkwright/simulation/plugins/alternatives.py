@@ -14,7 +14,6 @@ _ALTERNATIVES = {
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-air-speed-system": _AIR_SPEED,
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
-    "gz-sim-elevator-system": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
