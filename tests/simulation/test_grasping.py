@@ -17,7 +17,7 @@ def _finger(name: str, y: float, axis: str) -> str:
         f'<link name="{name}"><pose>0 {y} 0 0 0 0</pose><inertial><mass>0.2</mass></inertial><collision name="pad">'
         "<geometry><box><size>0.04 0.01 0.04</size></box></geometry></collision></link>"
         f'<joint name="{name}_joint" type="prismatic"><parent>palm</parent><child>{name}</child><axis><xyz>{axis}</xyz>'
-        "</axis></joint>"
+        "<limit><lower>-0.03</lower><upper>0.02</upper></limit></axis></joint>"
         f'<plugin name="{name}" filename="gz-sim-apply-joint-force-system"><joint_name>{name}_joint</joint_name>'
         "</plugin>"
     )
@@ -119,7 +119,7 @@ def cup(parameters: str = "<link_name>cup</link_name>") -> str:
 async def call(server, graph, type_name: str, service: str, **values):
     """Call a service between two steps, and return the response."""
     future = (
-        graph.create_node("operator")
+        graph.create_node(f"operator_{server.simulation.time}")
         .create_client(type_name, service)
         .call_async(get_service(type_name).Request(**values))
     )

@@ -26,6 +26,8 @@ from linkwright.xmltree import Element
 
 _MIN_FORCE = 1e-4
 """The least force in N that counts."""
+_MIN_DISTANCE = 1e-6
+"""The least distance in m from the origin of an object to a contact point."""
 _MIN_RATIO = 0.3
 """The least ratio of two opposing forces."""
 
@@ -50,13 +52,13 @@ class _Touch:
         link: the link of the gripper.
         force: the force on the object in N, in the axes of the world.
         point: the mean contact point in m, in the frame of the link.
-        distance: the distance in m from the contact point to the origin of the object.
+        from_object: the vector from the origin of the object to the contact point in m, in the frame of the object.
     """
 
     link: str
     force: Array
     point: Array
-    distance: float
+    from_object: Array
 
 
 @dataclass(slots=True)
@@ -160,9 +162,9 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
                     continue
                 position = contact.positions.mean(axis=0)
                 point = rotation_matrix(pose[3:]).T @ (position - pose[:3])
-                distance = float(np.linalg.norm(position - simulation.link_pose(touched_link)[:3]))
                 force = -contact.forces.sum(axis=0)
-                touches.setdefault(touched_link, []).append(_Touch(link, force, point, distance))
+                touch = _Touch(link, force, point, self._in_frame(touched_link, position))
+                touches.setdefault(touched_link, []).append(touch)
         return touches
 
     def _has_opposing_forces(self, touches: list[_Touch]) -> bool:
@@ -197,9 +199,16 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
         return any(distance > self.parameters.release_tolerance for distance in self._retreats(gripper))
 
     def _retreats(self, gripper: _Gripper) -> Iterator[float]:
-        """Yield how far each touching link has moved away from the object since the grasp, in m."""
-        position = np.array(self.simulation.link_pose(gripper.held_object)[:3])
+        """Yield how far each touching link has moved outward from the object since the grasp, in m."""
         for touch in gripper.touches:
             pose = self.simulation.link_pose(touch.link)
             point = pose[:3] + rotation_matrix(pose[3:]) @ touch.point
-            yield float(np.linalg.norm(point - position)) - touch.distance
+            distance = float(np.linalg.norm(touch.from_object))
+            movement = self._in_frame(gripper.held_object, point) - touch.from_object
+            yield float(movement @ touch.from_object) / max(distance, _MIN_DISTANCE)
+
+    def _in_frame(self, link: str, point: Array) -> Array:
+        """Return a point of the world in the frame of a link, in m."""
+        pose = self.simulation.link_pose(link)
+        coordinates: Array = rotation_matrix(pose[3:]).T @ (point - pose[:3])
+        return coordinates
