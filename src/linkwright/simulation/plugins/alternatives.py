@@ -6,7 +6,6 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
 _AIR_SPEED = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
-_WHEEL_DRIVE = phrase("wheels, and gz-sim-diff-drive-system")
 _WIDE_CAMERA = phrase("a camera with a wide <horizontal_fov>")
 
 _ALTERNATIVES = {
@@ -18,8 +17,6 @@ _ALTERNATIVES = {
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
-    "gz-sim-track-controller-system": _WHEEL_DRIVE,
-    "gz-sim-tracked-vehicle-system": _WHEEL_DRIVE,
     "wide_angle_camera": _WIDE_CAMERA,
     "wideanglecamera": _WIDE_CAMERA,
 }
