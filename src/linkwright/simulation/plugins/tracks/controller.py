@@ -172,7 +172,7 @@ class GzTrackController(SimulatedPlugin[TrackControllerParameters]):
     def _contacts(self, geom: int) -> tuple[Array, Array]:
         """Return the contact points of a geom, and the normals into it, shapes (n, 3), in world axes.
 
-        Without a contact, the center of the geom stands for the points, with the last normal.
+        Without a contact, the only point is the center of the geom, with the last normal.
         """
         data = self.simulation.data
         pairs = data.contact.geom[: data.ncon]
