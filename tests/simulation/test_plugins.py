@@ -34,7 +34,6 @@ SECOND = 1_000_000_000
 CLASSIC_SYSTEMS = ("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin")
 """Plugins that tests/simulation/test_server.py and test_classic_services.py test."""
 UNSIMULATED = (
-    "elevator",
     "wheel-slip",
     "follow-actor",
     "log",

@@ -575,6 +575,10 @@ class Simulation:
             forces[by][3:] += cross((x, y, z), (force[0], force[1], force[2]))
         self.data.xfrc_applied[body] = sum(forces.values())
 
+    def wake(self) -> None:
+        """Wake all bodies, because something may set them in motion."""
+        self._sleep.wake()
+
     def set_gravity(self, gravity: Vector3) -> None:
         """Set the gravity in m/s2, in the axes of the world."""
         self.refresh()

@@ -6,24 +6,17 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
 _AIR_SPEED = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
-_WHEEL_DRIVE = phrase("wheels, and gz-sim-diff-drive-system")
-_VELOCITY_CONTROL = phrase("gz-sim-velocity-control-system")
 _WIDE_CAMERA = phrase("a camera with a wide <horizontal_fov>")
 
 _ALTERNATIVES = {
     "air_speed": _AIR_SPEED,
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-air-speed-system": _AIR_SPEED,
-    "gz-sim-apply-link-wrench-system": phrase("the service /apply_link_wrench"),
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
-    "gz-sim-elevator-system": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
-    "gz-sim-track-controller-system": _WHEEL_DRIVE,
-    "gz-sim-tracked-vehicle-system": _WHEEL_DRIVE,
-    "gz-sim-trajectory-follower-system": _VELOCITY_CONTROL,
     "wide_angle_camera": _WIDE_CAMERA,
     "wideanglecamera": _WIDE_CAMERA,
 }

@@ -23,7 +23,6 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.single import Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
-from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.entities import vector_components
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -94,7 +93,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         self._motor = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
         self.simulation.keep_awake(self._link)
         self.reset()
-        namespace = _text(self.context.element, "robotNamespace").strip("/") or self.context.path
+        namespace = self.text_in(self.context.element, "robotNamespace").strip("/") or self.context.path
         self.node.subscribe(
             "actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic}", self._on_actuators
         )
@@ -173,7 +172,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._find_rotors(element)
         self._rotors: dict[str, GzMulticopterMotor] = {}
         self.reset()
-        namespace = _text(element, "robotNamespace").strip("/")
+        namespace = self.text_in(element, "robotNamespace").strip("/")
         topic_prefix = f"/{namespace}/" if namespace else "/"
         commander = self.node.commander(self._stop_motion)
         twist_type = "geometry_msgs/msg/Twist"
@@ -205,7 +204,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         columns = []
         self._joints = []
         for rotor in rotors:
-            joint = self.joint(_text(rotor, "jointName"))
+            joint = self.joint(self.text_in(rotor, "jointName"))
             rotor_position = body_rotation.T @ (
                 np.array(simulation.link_pose(simulation.scene.joints[joint].child)[:3]) - body_pose[:3]
             )
@@ -281,9 +280,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
     def _motors(self) -> dict[str, GzMulticopterMotor]:
         """Return the motors of the model that have started, by the names of their joints."""
         if len(self._rotors) < len(self._joints):  # the other motors have not started yet
-            plugins = self._environment.plugins(self.context.path.partition(SEPARATOR)[0])
             motors = [
-                simulated_plugin for simulated_plugin in plugins if isinstance(simulated_plugin, GzMulticopterMotor)
+                simulated_plugin
+                for simulated_plugin in self.model_plugins
+                if isinstance(simulated_plugin, GzMulticopterMotor)
             ]
             self._rotors = {self.joint(motor.parameters.joint_name): motor for motor in motors}
         return self._rotors
@@ -319,8 +319,3 @@ def _attitude(rotation: Array, acceleration: Array) -> Array:
     left = np.cross(up, heading)
     left /= np.linalg.norm(left)
     return np.column_stack((np.cross(left, up), left, up))
-
-
-def _text(element: Element | None, tag: str) -> str:
-    child = None if element is None else element.first(tag)
-    return "" if child is None else child.text().strip()

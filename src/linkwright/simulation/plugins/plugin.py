@@ -243,6 +243,11 @@ class SimulatedPlugin(Generic[P]):
         top_model, _, _ = self.context.path.partition(SEPARATOR)
         return self.simulation.scene.models[top_model].structure.links[0].link.name
 
+    @property
+    def model_plugins(self) -> tuple[SimulatedPlugin[Any], ...]:
+        """The running plugins and sensors of the top-level model that contains the plugin."""
+        return self._environment.plugins(self.context.path.partition(SEPARATOR)[0])
+
     def parameter_error(self, message: Phrase) -> LinkwrightError:
         """Return the error SIM160, to raise in `start` for contradictory parameters.
 
@@ -252,6 +257,12 @@ class SimulatedPlugin(Generic[P]):
         if element is None:
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
+
+    @staticmethod
+    def text_in(parent: Element | None, tag: str) -> str:
+        """Return the text in a child of one of the plugin's nested elements, or an empty text for an absent child."""
+        child = None if parent is None else parent.first(tag)
+        return "" if child is None else child.text().strip()
 
     def number_in(self, parent: Element | None, tag: str, default: float | None = None) -> float:
         """Return the number in a child of one of the plugin's nested elements, for which `PARAMETERS` has no field.

@@ -40,8 +40,8 @@ _SENSORS_OF_SYSTEMS = {
 """The systems of gz that publish measurements, and the types of their sensors."""
 _OWN_SYSTEMS = ("physics", "user-commands", "label")
 """The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
-_NO_LIBRARY = ("", "__default__")
-"""The values of ``filename`` that mean "no library" in generated files."""
+_NO_LIBRARY = ("", "__default__", "dummy")
+"""The values of ``filename`` that mean "no library": in generated files, and in the settings of gz for a world."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS)),

@@ -368,15 +368,14 @@ class Scene:
         self.models[joint.partition(SEPARATOR)[0]].parts.append(equality)
         return str(equality.name)
 
-    def weld(self, parent: str, child: str, pose: Transform) -> None:
+    def weld(self, parent: str, child: str, pose: Transform, *, is_colliding: bool = False) -> None:
         """Fix a link to another link until `unweld` is called or one of the links is removed.
-
-        Meanwhile, the models of the two links do not collide with each other.
 
         Args:
             parent: the name of the parent link.
             child: the name of the child link.
             pose: the pose of the child link in the frame of the parent link.
+            is_colliding: whether the models of the two links collide with each other meanwhile.
         """
         name = _weld_name(parent, child)
         equality = self._add_equality(self._mujoco.mjtEq.mjEQ_WELD, (parent, child))
@@ -384,7 +383,7 @@ class Scene:
         equality.name = name
         equality.data[:10] = [0.0, 0.0, 0.0, x, y, z, qw, qx, qy, qz]
         models = {model_of(parent), model_of(child)}
-        if len(models) > 1:
+        if len(models) > 1 and not is_colliding:
             links_by_model = (
                 [tree_link.link for tree_link in self.models[model].structure.links] for model in sorted(models)
             )

@@ -17,6 +17,7 @@ import numpy as np
 
 from linkwright.messages import get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.simulation.plugins.battery import GzBattery
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.pid import Gains, Pid
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -50,13 +51,16 @@ class ThrusterParameters:
     p_gain: float = 0.1
     i_gain: float = 0.0
     d_gain: float = 0.0
+    battery_name: str = ""
+    power_load: float = 0.0
 
 
 class GzThruster(SimulatedPlugin[ThrusterParameters]):
     """The substitute for ``gz-sim-thruster-system``.
 
     Commands are ``std_msgs/msg/Float64``: thrusts in N, or with ``<use_angvel_cmd>`` speeds in rad/s. The speed of the
-    propeller is published, or with ``<use_angvel_cmd>`` the thrust.
+    propeller is published, or with ``<use_angvel_cmd>`` the thrust. The propeller stops while a battery of its model is
+    empty, and draws ``<power_load>`` from the battery that ``<battery_name>`` names.
     """
 
     PARAMETERS = ThrusterParameters
@@ -147,6 +151,16 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         """Return the speed in rad/s of a propeller with a thrust in N."""
         return copysign(sqrt(abs(thrust / factor)), thrust) if factor else 0.0
 
+    def _has_power(self) -> bool:
+        """Return whether no battery of the model is empty, after telling the thruster's battery of its load."""
+        parameters, has_power = self.parameters, True
+        for battery in self.model_plugins:
+            if isinstance(battery, GzBattery) and battery.context.path == self.context.path:
+                has_power = has_power and not battery.is_empty
+                if battery.parameters.battery_name == parameters.battery_name:
+                    battery.loads[self._joint] = parameters.power_load
+        return has_power
+
     def _apply_thrust(self) -> None:
         simulation = self.simulation
         pose = simulation.link_pose(self._link)
@@ -154,7 +168,11 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         velocity, _ = simulation.link_velocity(self._link)
         thrust, speed = self._thrust_and_speed(float(velocity @ axis))
         torque = 0.0
-        if self._motor is not None:
+        if not self._has_power():
+            thrust = 0.0
+            if self._motor is not None:
+                self._motor.release()
+        elif self._motor is not None:
             self._motor.target = speed
         else:
             error = speed - simulation.joint_state(self._joint)[1]

@@ -7,6 +7,7 @@ velodyne_simulator (points), gz-sensors and gz-msgs (topics, points).
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Collection
 from dataclasses import dataclass
 from math import inf
 from typing import Any, ClassVar, Generic, TypeVar
@@ -201,7 +202,7 @@ class OldLaser(_OneLidar[LaserParameters]):
     """The substitute for ``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so`` of ROS 1."""
 
     PARAMETERS = LaserParameters
-    IGNORED = ("gaussianNoise", "hokuyoMinIntensity")
+    IGNORED: ClassVar[Collection[str]] = ("gaussianNoise", "hokuyoMinIntensity")
     KIND: ClassVar[str] = _SCAN_TYPE
 
     def create_publishers(self) -> None:

@@ -1,0 +1,1 @@
+"""Plugins of Gazebo Classic that hold objects: the grasp fix and the vacuum gripper."""

@@ -1,0 +1,1 @@
+"""Tracks of vehicles and belts of conveyors."""
