@@ -39,18 +39,18 @@ def changed_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
         old, new = ([*_lines(text.read_text("utf-8"))] for text in texts)
     except (OSError, ValueError):
         return None
-    gone, come = (list((Counter(a) - Counter(b)).elements()) for a, b in ((old, new), (new, old)))
-    if not gone and not come:
+    removed, added = (list((Counter(a) - Counter(b)).elements()) for a, b in ((old, new), (new, old)))
+    if not removed and not added:
         return None
-    if all(map(_PACKAGE.fullmatch, (*gone, *come))):
-        return _parts(joined_first(come, MAX_NAMES), joined_first(gone, MAX_NAMES))
-    is_one = len(gone) == len(come) == 1
-    if is_one and SequenceMatcher(None, gone[0], come[0], autojunk=False).ratio() >= _MIN_SIMILARITY:
-        before, after = excerpts(gone[0], come[0])
+    if all(map(_PACKAGE.fullmatch, (*removed, *added))):
+        return _parts(joined_first(added, MAX_NAMES), joined_first(removed, MAX_NAMES))
+    is_one = len(removed) == len(added) == 1
+    if is_one and SequenceMatcher(None, removed[0], added[0], autojunk=False).ratio() >= _MIN_SIMILARITY:
+        before, after = excerpts(removed[0], added[0])
         return phrase("{old} -> {new}", old=before, new=after)
-    if len(gone) + len(come) <= _MAX_LINES:
-        return _parts(*(joined([f"`{shortened(line, _MAX_LENGTH)}`" for line in lines]) for lines in (come, gone)))
-    counts = (counted("{count} line", "{count} lines", len(lines)) if lines else "" for lines in (come, gone))
+    if len(removed) + len(added) <= _MAX_LINES:
+        return _parts(*(joined([f"`{shortened(line, _MAX_LENGTH)}`" for line in lines]) for lines in (added, removed)))
+    counts = (counted("{count} line", "{count} lines", len(lines)) if lines else "" for lines in (added, removed))
     return _parts(*counts)
 
 

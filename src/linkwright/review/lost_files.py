@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect
-from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_folders, listed
+from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_folders, list_names
 from linkwright.review.installed_paths import build_file, package_facts, python_packages
 from linkwright.review.kinds import rule_of
 from linkwright.review.renamed_packages import renamed_packages
@@ -71,7 +71,7 @@ def _lost_targets(
         (others, phrase("programs that look for the files do not find them")),
     ):
         if targets:
-            names = listed(files_and_folders(targets, new.files))
+            names = list_names(files_and_folders(targets, new.files))
             yield Change(phrase("not installed any more: {names}", names=names), Effect.BREAKING, reason)
 
 
@@ -97,7 +97,7 @@ def _lost_modules(versions: Versions, files: Sequence[ChangedFile], old: BuildFa
             text = phrase("Python module '{old}' renamed to '{new}'", old=module, new=new_module)
             yield _module_change(text, is_program=is_program)
     for is_program, names in removed.items():
-        text = phrase("{kind} removed: {names}", kind=FactKind.MODULE.title, names=listed(names))
+        text = phrase("{kind} removed: {names}", kind=FactKind.MODULE.title, names=list_names(names))
         yield _module_change(text, is_program=is_program)
 
 

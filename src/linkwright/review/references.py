@@ -10,7 +10,7 @@ from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.launches.script_options import refused_options
+from linkwright.review.launches.script_options import find_refused_options
 from linkwright.review.versions import Versions
 
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
@@ -22,7 +22,7 @@ def lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) ->
 
     These are files that only the old version has, and options that a script does not accept.
     """
-    yield from refused_options(versions, changed_files)
+    yield from find_refused_options(versions, changed_files)
     lost = {file.old_path for file in changed_files if file.old_path and file.old_path != file.new_path}
     names = {PurePosixPath(path).name for path in lost}
     if not names:

@@ -32,7 +32,7 @@ from linkwright.review.drawings.scene_images import lone_world_images
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import is_map, map_of_image
-from linkwright.review.files.mesh_groups import grouped_meshes
+from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
 from linkwright.review.files.templates import is_template
@@ -50,7 +50,7 @@ from linkwright.review.kinds import (
     rule_of,
     rule_of_contents,
 )
-from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, with_other_formats
+from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.lost_controllers import lost_controllers
 from linkwright.review.lost_data import lost_data
@@ -123,7 +123,7 @@ class _Reviewer:
         self._versions = versions
         self._drawings = drawings
         self._folders = folders
-        changed_files = with_other_formats(versions.changed_files)
+        changed_files = join_format_changes(versions.changed_files)
         self._changed_files = [file for file in changed_files if self._is_in_scope(file.path)]
         self._new_paths = {
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
@@ -164,7 +164,7 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            grouped_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
+            group_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
             [file.path for file in other_files],
             {**file_states(self._versions, other_files), **moved},
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),

@@ -1,4 +1,4 @@
-"""The comparison of ``CMakeLists.txt``: executables, libraries, interfaces and files that a package installs."""
+"""Compare ``CMakeLists.txt`` files: the executables, libraries, interfaces and files that a package installs."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
 
 def compare_cmake_files(pair: FilePair) -> None:
-    """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, as far as CMake is not needed for it."""
+    """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, without running CMake."""
     compare_build_files(pair, read_cmake_facts, compare_targets)
 
 
@@ -78,10 +78,10 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     """Return the facts of a ``CMakeLists.txt`` with its subdirectories."""
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
-    facts = BuildFacts(package=_parent(path))
+    facts = BuildFacts(package=_parent_folder(path))
     program = CMakeProgram(file.parent)
     commands = list(program.run(source))
-    for reader in (_targets, _interfaces, _exports, _packages, _tests, _settings):
+    for reader in (_installed_targets, _interfaces, _exports, _packages, _tests, _settings):
         facts.facts += reader(commands)
     facts.facts += _own_interfaces(commands, file.parent)
     facts.facts += _built_targets(commands)
@@ -89,7 +89,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     if folder_name and any(command.name == "rosbuild_init" for command in commands):
         program.variables.setdefault("PROJECT_NAME", folder_name)
     facts.facts += _skipped_targets(source, commands, program.variables)
-    facts.facts += _stops(source, commands)
+    facts.facts += _build_failures(source, commands)
     facts.targets = read_targets(commands)
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
@@ -98,7 +98,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     cmake = read_cmake(source, file.parent)
     _read_files(facts, cmake, file.parent)
     facts.rest = [
-        (_name_of(command), _own_text(command, facts.project))
+        (_name_of(command), _normalized_arguments(command, facts.project))
         for command in commands
         if command.name not in _FACT_COMMANDS and not _is_test(command) and not _is_variable(command)
     ]
@@ -110,31 +110,31 @@ def _name_of(command: Command) -> str:
     return command.words[0] if command.name == "set" else command.name
 
 
-def _own_text(command: Command, project: str) -> str:
-    """Return the arguments of a command without interfaces, and without the name of the project."""
+def _normalized_arguments(command: Command, project: str) -> str:
+    """Return the arguments of a command without interfaces and the name of the project."""
     words = [word for word in command.words if not word.endswith(_INTERFACE_SUFFIXES)]
     return " ".join("${PROJECT_NAME}" if word == project else word for word in words)
 
 
 def _is_variable(command: Command) -> bool:
-    """Return whether a command sets a variable of the file, whose uses are compared."""
+    """Return whether a command sets a variable of the file. The uses of the variable are compared instead."""
     if command.name != "set":
         return False
     name = "".join(command.words[:1])
     return not name.startswith("CMAKE_") or name in _STANDARDS or _IRRELEVANT.fullmatch(name) is not None
 
 
-def _parent(path: str) -> str:
+def _parent_folder(path: str) -> str:
     parent = PurePosixPath(path).parent.as_posix()
     return "" if parent == "." else parent
 
 
 def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
-    """Add the files that are copied. Programs are executables."""
+    """Add the copied files to the facts. Copied programs count as executables."""
     facts.unknown = frozenset(cmake.unknown)
     programs = cmake.programs
     spans = {item.text: cmake.span(item) for item in cmake.files}
-    _move_missing_files(facts, cmake, package)
+    _drop_missing_sources(facts, cmake, package)
     facts.project = "" if cmake.project is None else cmake.project.text
     try:
         facts.files = {file.destination: file.source for file in cmake.installed_files(package) if file.content is None}
@@ -147,8 +147,8 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     facts.facts += [Fact(FactKind.MODULE, module) for module in cmake.modules]
 
 
-def _move_missing_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
-    """Take what the repository does not have from the rules that copy files, and add the folders as facts."""
+def _drop_missing_sources(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
+    """Remove sources that the repository lacks from the copy rules, and add missing folders as facts."""
     for index, rule in enumerate(cmake.copies):
         missing = [item for item in rule.items if not _exists(package, item.text)]
         if rule.kind == "DIRECTORY":
@@ -172,8 +172,8 @@ def _conditions(source: SourceText) -> dict[int, str]:
     return conditions_of(source)
 
 
-def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the targets that are installed and exported, and the executables of components."""
+def _installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the installed and exported targets, and the executables of components."""
     libraries = {command.words[0] for command in commands if command.name in _LIBRARIES and command.words}
     built = _BuiltNames(commands)
     for command in commands:
@@ -189,18 +189,18 @@ def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
                 if target.text in libraries:
                     yield _fact(FactKind.LIBRARY, target)
                 else:
-                    yield _fact(FactKind.EXECUTABLE, target, _destination(command.words))
+                    yield _fact(FactKind.EXECUTABLE, target, _installation_folder(command.words))
                 if "EXPORT" in command.words:
                     yield _fact(FactKind.EXPORTED_TARGET, target)
         if command.name == "rclcpp_components_register_node":
-            yield from _after(command, "EXECUTABLE", FactKind.EXECUTABLE)
-            yield from _after(command, "PLUGIN", FactKind.COMPONENT)
+            yield from _arguments_after(command, "EXECUTABLE", FactKind.EXECUTABLE)
+            yield from _arguments_after(command, "PLUGIN", FactKind.COMPONENT)
         if command.name == "rclcpp_components_register_nodes":
             yield from (_fact(FactKind.COMPONENT, argument) for argument in arguments[1:])
 
 
 class _BuiltNames:
-    """The names that can be those of built targets: CMake stops at an installed target that nothing builds."""
+    """The possible names of built targets. CMake fails at an installed target that nothing builds."""
 
     def __init__(self, commands: Sequence[Command]) -> None:
         makers = [each for each in commands if not each.name.startswith(_COMMANDS_AFTER_TARGETS) and each.words]
@@ -221,7 +221,7 @@ def _built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
 
 
 def _skipped_targets(source: SourceText, commands: Sequence[Command], variables: Mapping[str, str]) -> Iterator[Fact]:
-    """Yield the targets that are only built under conditions that do not hold here, such as another version of ROS."""
+    """Yield the targets that are built only under conditions that do not hold, such as for another version of ROS."""
 
     def with_values(text: str) -> str:
         return _VARIABLE.sub(lambda match: variables.get(match[1], match[0]), text)
@@ -239,14 +239,14 @@ def _skipped_targets(source: SourceText, commands: Sequence[Command], variables:
 
 
 def _built_kind(command: str, commands: Sequence[Command]) -> FactKind:
-    """Return the kind of the targets of a command: in ROS 1, they can be used although they are not installed."""
+    """Return the kind of the targets of a command. In ROS 1, targets can be used without being installed."""
     if not any(each.name in ("catkin_package", "rosbuild_init") for each in commands):
         return FactKind.BUILT_TARGET
     return FactKind.BUILT_EXECUTABLE if command in _EXECUTABLES else FactKind.BUILT_LIBRARY
 
 
-def _stops(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the messages with which the build fails, also under conditions that do not hold here."""
+def _build_failures(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the messages with which the build can fail, including under conditions that do not hold."""
     sources = {source.name: source}
     for command in commands:
         sources |= {argument.source.name: argument.source for argument in command.arguments[:1]}
@@ -258,15 +258,15 @@ def _stops(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
                 yield Fact(FactKind.STOP, text, span=each.span(tokens[1].start, tokens[1].end), condition=condition)
 
 
-def _destination(words: Sequence[str]) -> str:
-    """Return the folder into which executables are installed, or an empty text if it is not known."""
+def _installation_folder(words: Sequence[str]) -> str:
+    """Return the installation folder of executables; empty if it is unknown."""
     start = words.index("RUNTIME") if "RUNTIME" in words else 0
     rest = words[start:]
     target = rest[rest.index("DESTINATION") + 1] if "DESTINATION" in rest[:-1] else ""
     return "" if is_open(target) else target.rstrip("/")
 
 
-def _after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
+def _arguments_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
     words = command.words
     if keyword in words[:-1]:
         yield _fact(kind, command.arguments[words.index(keyword) + 1])
@@ -287,7 +287,7 @@ def _interfaces(commands: Sequence[Command]) -> Iterator[Fact]:
 
 
 def _own_interfaces(commands: Sequence[Command], package: Path) -> Iterator[Fact]:
-    """Yield the interfaces that commands of ROS 1 build. Those without a list build all of a folder."""
+    """Yield the interfaces that ROS 1 commands build. A command without a list builds all interfaces of a folder."""
     for command in commands:
         if command.name not in _INTERFACE_COMMANDS:
             continue
@@ -322,7 +322,7 @@ def _exports(commands: Sequence[Command]) -> Iterator[Fact]:
 
 
 def _exported_folder(argument: Argument, project: str) -> Fact:
-    """Return the fact about an exported folder. The folder of the project in it makes no difference to others."""
+    """Return the fact about an exported folder. The name of the project in it is ignored."""
     return _fact(FactKind.EXPORTED_FOLDER, argument, name=argument.text.removesuffix(f"/{project}"))
 
 
@@ -366,7 +366,7 @@ def _is_test(command: Command) -> bool:
 
 
 def _settings(commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the settings that concern the whole build: versions of languages and of CMake, and options."""
+    """Yield the settings of the whole build: versions of languages and of CMake, and options."""
     for command in commands:
         words, arguments = command.words, command.arguments
         if command.name == "cmake_minimum_required" and len(words) > 1:

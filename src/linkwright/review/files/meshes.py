@@ -1,4 +1,4 @@
-"""The comparison of mesh files: bytes, triangles and size."""
+"""Compare mesh files: bytes, triangles and size."""
 
 from __future__ import annotations
 

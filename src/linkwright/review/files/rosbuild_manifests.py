@@ -1,4 +1,4 @@
-"""The comparison of ``manifest.xml`` and ``stack.xml``, the manifests of rosbuild, which was used before catkin."""
+"""Compare ``manifest.xml`` and ``stack.xml``, the manifests of rosbuild, the predecessor of catkin."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _Items = dict[tuple[str, str], Element]
 
 
 def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
-    """Yield the changed manifests of rosbuild, each with the changes."""
+    """Yield the changed rosbuild manifests with their changes."""
     for file in changed_files:
         if PurePosixPath(file.path).name not in _FILES or file.is_submodule:
             continue
@@ -34,7 +34,7 @@ def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) 
 
 
 def _read(version: Version, path: str | None) -> Element | None:
-    """Return the root of a manifest, or None if the version does not have it or the file is something else."""
+    """Return the root of a manifest, or None if the version lacks the file or it is not a manifest."""
     if path is None or not version.file(path).is_file():
         return None
     try:
@@ -51,13 +51,13 @@ def _changes(versions: Versions, file: ChangedFile, old: Element | None, new: El
         items = phrase("depends on {names}", names=joined_first(names, MAX_NAMES))
         yield Change(phrase("{change}: {items}", change=text, items=items) if names else text)
     elif old is not None and new is None and file.new_path is None:
-        yield from _removal(versions, file.path, old)
+        yield from _removal_changes(versions, file.path, old)
     elif old is not None and new is not None:
         yield from _differences(file, old, new)
 
 
-def _removal(versions: Versions, path: str, old: Element) -> Iterator[Change]:
-    """Yield the removal of a manifest, or the differences to the manifest of catkin in its place."""
+def _removal_changes(versions: Versions, path: str, old: Element) -> Iterator[Change]:
+    """Yield the removal of a manifest, or the differences from the catkin manifest that replaces it."""
     manifest = versions.new.file((PurePosixPath(path).parent / MANIFEST).as_posix())
     if old.tag == "stack":
         yield Change(phrase("stack removed"))
@@ -90,8 +90,8 @@ def _differences(file: ChangedFile, old: Element, new: Element) -> Iterator[Chan
     if _description(old) != _description(new):
         yield Change(phrase("description changed"), location=_location(file, new, is_old=False))
     old_items, new_items = ({**_dependencies(root), **_exports(root)} for root in (old, new))
-    yield from _lone(file, new_items, old_items, is_added=True)
-    yield from _lone(file, old_items, new_items, is_added=False)
+    yield from _lone_changes(file, new_items, old_items, is_added=True)
+    yield from _lone_changes(file, old_items, new_items, is_added=False)
 
 
 def _dependencies(root: Element) -> _Items:
@@ -112,7 +112,7 @@ def _exports(root: Element) -> _Items:
     }
 
 
-def _lone(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -> Iterator[Change]:
+def _lone_changes(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -> Iterator[Change]:
     for tag in ("depend", "rosdep", "export"):
         lone = [
             (name, element) for (each, name), element in items.items() if each == tag and (each, name) not in others
@@ -125,12 +125,12 @@ def _lone(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -
             yield Change(phrase("{tags} added: {packages}", tags=tag, packages=names), location=location)
             continue
         text = phrase("{tags} removed: {packages}", tags=tag, packages=names)
-        reason = _reason(tag, [element for _, element in lone])
+        reason = _removal_reason(tag, [element for _, element in lone])
         yield Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
 
 
-def _reason(tag: str, elements: Sequence[Element]) -> Phrase | None:
-    """Return why it is breaking that elements are gone, or None if it is not."""
+def _removal_reason(tag: str, elements: Sequence[Element]) -> Phrase | None:
+    """Return the reason why removing elements is breaking, or None if it is not."""
     plugins = [element.tag for element in elements if tag == "export" and "plugin" in element.attributes]
     if plugins:
         return phrase("programs that look for plugins of '{name}' do not find these", name=plugins[0])

@@ -1,4 +1,4 @@
-"""The comparison of configurations of RViz: displays with their topics, frames, tools, panels and the view."""
+"""Compare RViz configurations: displays with their topics, frames, tools, panels and the view."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import yaml
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.yaml_values import composed, read_yaml_values
+from linkwright.review.files.yaml_values import compose_yaml, read_yaml_values
 from linkwright.review.versions import Version
 
 _MANAGER = "Visualization Manager"
@@ -30,7 +30,7 @@ class _Item:
     """A display, tool or panel.
 
     Attributes:
-        name: its name, with those of the groups that contain it.
+        name: its name, with the names of the groups around it.
         class_name: its class.
         properties: its properties by name.
         line: its line, starting at 1.
@@ -58,7 +58,7 @@ class _Configuration:
 
 
 def compare_rviz_files(pair: FilePair) -> None:
-    """Compare two versions of a configuration of RViz, without the layout of its window."""
+    """Compare two versions of an RViz configuration, without the layout of the window."""
     configurations = pair.read(_read)
     if configurations is None:
         return
@@ -81,42 +81,42 @@ def rviz_contents(version: Version, path: str) -> Phrase | None:
 
 def _read(file: Path) -> _Configuration:
     text = file.read_text(encoding="utf-8-sig")
-    root = composed(text)
-    manager = _child(root, _MANAGER)
+    root = compose_yaml(text)
+    manager = _find_child(root, _MANAGER)
     if manager is None:
         raise UnreadableFileError(phrase("it has no '{name}'", name=_MANAGER))
     values = {name: value.text for name, value in read_yaml_values(text).items()}
     return _Configuration(
-        list(_items(_child(manager, "Displays"), "")),
-        list(_items(_child(manager, "Tools"), "")),
-        list(_items(_child(root, "Panels"), "")),
+        list(_read_items(_find_child(manager, "Displays"), "")),
+        list(_read_items(_find_child(manager, "Tools"), "")),
+        list(_read_items(_find_child(root, "Panels"), "")),
         values,
     )
 
 
-def _child(node: yaml.Node | None, name: str) -> yaml.Node | None:
+def _find_child(node: yaml.Node | None, name: str) -> yaml.Node | None:
     if not isinstance(node, yaml.MappingNode):
         return None
     return next((value for key, value in node.value if key.value == name), None)
 
 
-def _text(node: yaml.Node | None) -> str:
+def _node_text(node: yaml.Node | None) -> str:
     return str(node.value) if isinstance(node, yaml.ScalarNode) else ""
 
 
-def _items(node: yaml.Node | None, group: str) -> Iterator[_Item]:
-    """Yield the items of a list, and those of the groups of displays in it."""
+def _read_items(node: yaml.Node | None, group: str) -> Iterator[_Item]:
+    """Yield the items of a list, including the items of display groups."""
     for item in node.value if isinstance(node, yaml.SequenceNode) else ():
-        class_name = _text(_child(item, "Class"))
+        class_name = _node_text(_find_child(item, "Class"))
         if not class_name:
             continue
-        name = group + (_text(_child(item, "Name")) or class_name)
-        properties = dict(_properties(item, ""))
+        name = group + (_node_text(_find_child(item, "Name")) or class_name)
+        properties = dict(_read_properties(item, ""))
         yield _Item(name, class_name, properties, item.start_mark.line + 1, item.start_mark.column + 1)
-        yield from _items(_child(item, "Displays"), f"{name}/")
+        yield from _read_items(_find_child(item, "Displays"), f"{name}/")
 
 
-def _properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
+def _read_properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
     """Yield the properties of an item. A topic is a text in old files and a group of properties in new ones."""
     for key, value in node.value:
         name = str(key.value)
@@ -124,7 +124,7 @@ def _properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
             continue
         full_name = path if path and name == "Value" else f"{path} {name}".strip()
         if isinstance(value, yaml.MappingNode):
-            yield from _properties(value, full_name)
+            yield from _read_properties(value, full_name)
         elif isinstance(value, yaml.ScalarNode):
             yield full_name, " ".join(str(value.value).split())
 
@@ -146,7 +146,7 @@ def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, st
 
 def _compare_displays(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item]) -> None:
     old_rest, new_rest = list(old), list(new)
-    for before, after in list(_matched(old_rest, new_rest)):
+    for before, after in list(_take_matches(old_rest, new_rest)):
         for text in _display_changes(before, after):
             pair.add(text, _location(pair, after))
     for display in new_rest:
@@ -161,8 +161,8 @@ def _compare_displays(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item]
         pair.add(text, _location(pair, display, is_old=True))
 
 
-def _matched(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
-    """Take the displays that belong together from both lists, and yield them."""
+def _take_matches(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
+    """Remove the matching displays from both lists, and yield them as pairs."""
     for keys in (("name", "class_name", "topic"), ("name", "class_name"), ("class_name", "topic"), ("name",)):
         for after in list(new):
             key = [getattr(after, name) for name in keys]

@@ -1,4 +1,4 @@
-"""The contents of added elements of SDF in one line."""
+"""Summarize added SDF elements in one line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NAMED_BY_CHILD = "include"
 
 
 def names_in(element: Element) -> Iterator[Phrase]:
-    """Yield the models of a world, or the links and joints of a model, and the plugins and sensors."""
+    """Yield the models of a world, or the links and joints of a model, and all plugins and sensors."""
     names = {tag: [_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")}
     models = [*names["model"], *names["include"]]
     if models:
@@ -31,7 +31,7 @@ def names_in(element: Element) -> Iterator[Phrase]:
 
 
 def shapes_and_mass(model: Element) -> Iterator[Phrase]:
-    """Yield the shapes of a model, and the mass of its links that have one."""
+    """Yield the shapes of a model, and the total mass of the links that have a mass."""
     shapes: Counter[tuple[str, str]] = Counter()
     for element in model.walk():
         geometry = element.first("geometry") if element.tag in ("visual", "collision") else None
@@ -61,7 +61,7 @@ def _name(element: Element) -> str:
 
 
 def all_content(element: Element) -> str:
-    """Return the attributes and texts of an element and of all elements in it, without their names."""
+    """Return the attributes and texts of an element and all its descendants, without names."""
     return " ".join(filter(None, (f"{child.tag} {own_content(child)}" for child in element.walk())))
 
 
@@ -69,7 +69,7 @@ def added_text(path: str, element: Element) -> Phrase:
     """Return the line about an added element, with its values.
 
     Args:
-        path: the path of the element, with the names of others that were added with the same contents.
+        path: the path of the element, with the names of elements that were added with the same contents.
         element: the element.
     """
     contents = joined(names) if (names := list(names_in(element))) else None
@@ -81,7 +81,7 @@ def added_text(path: str, element: Element) -> Phrase:
 
 
 def _only_descendant(element: Element, path: str) -> tuple[Element, str]:
-    """Return an element, or, if it has no name, the one below it that has a value or several children, and its path."""
+    """Return an element, or for a nameless one the first descendant with a value or several children, with its path."""
     children = list(element.elements())
     while len(children) == 1 and not (element.attributes or element.text().strip() or element.tag == _NAMED_BY_CHILD):
         element = children[0]

@@ -1,4 +1,4 @@
-"""Quantities of whole models in SDF, in two versions."""
+"""Compare quantities of whole SDF models."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figur
     Args:
         old: the old file, with its includes resolved.
         new: the new file, with its includes resolved.
-        scenes: the visuals of both files; empty if they do not differ, or cannot be drawn.
+        scenes: the visuals of both files; empty if they are equal or cannot be drawn.
     """
     if old.worlds or new.worlds:
         return
@@ -46,13 +46,13 @@ class _Measures:
         links: the number of links.
         joints: the number of joints.
         moving_joints: the number of joints that are not fixed.
-        mass_properties: the mass properties of all models in the frame of the file; None if the simulator computes
-            those of a link.
+        mass_properties: the mass properties of all models in the frame of the file; None if the simulator computes the
+            mass properties of a link.
     """
 
     def __init__(self, models: Sequence[Model]) -> None:
         links = [link for model in models for link in links_of(model, Frames(model), IDENTITY, model.name)]
-        joints = [joint for model in models for joint in _joints(model)]
+        joints = [joint for model in models for joint in _joint_mobility(model)]
         self.links = len(links)
         self.joints = len(joints)
         self.moving_joints = joints.count(True)
@@ -62,11 +62,11 @@ class _Measures:
             self.mass_properties = combine(_mass_properties(*pair) for pair in inertials)
 
 
-def _joints(model: Model) -> Iterator[bool]:
+def _joint_mobility(model: Model) -> Iterator[bool]:
     """Yield whether each joint of a model and of its nested models moves."""
     yield from (joint.type != "fixed" for joint in model.joints)
     for nested_model in model.models:
-        yield from _joints(nested_model)
+        yield from _joint_mobility(nested_model)
 
 
 def _mass_properties(placed: PlacedLink, inertial: Inertial) -> MassProperties:

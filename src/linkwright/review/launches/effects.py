@@ -1,4 +1,4 @@
-"""The rules for breaking changes of launch files: names of nodes, topics and arguments that others use."""
+"""Decide which changes of launch files are breaking: other programs use nodes, topics and arguments."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ _ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 def removal_reason(
     entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, stops_nodes: bool = False
 ) -> Phrase | None:
-    """Return why removing a launch action is a breaking change, or None if it is not.
+    """Return the reason why removing a launch action is breaking, or None if it is not.
 
     Args:
         entry: the action.
@@ -88,15 +88,15 @@ def removal_reason(
         stops_nodes: whether the action includes a file with nodes that nothing else starts in the new version.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
-        return value_reason(entry.name, is_ros1=outline.is_ros1)
+        return argument_removal_reason(entry.name, is_ros1=outline.is_ros1)
     if entry.kind == READING:
         return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
-    if condition_holds(_condition(entry, outline)) is False:
+    if condition_holds(_resolve_condition(entry, outline)) is False:
         return None
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
-    if _spawns(entry):
-        return None if _spawns_as_much(outline, new) else phrase("the robot or model is not spawned any more")
+    if _is_spawner(entry):
+        return None if _spawns_as_many(outline, new) else phrase("the robot or model is not spawned any more")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
     if entry.kind == "include":
@@ -115,14 +115,14 @@ def removal_reason(
     return _served_reason(entry, names, new)
 
 
-def _spawns(entry: Entry) -> bool:
-    """Return whether a node tells a simulator once to create a robot or model."""
+def _is_spawner(entry: Entry) -> bool:
+    """Return whether a node requests a robot or model from a simulator and exits."""
     return entry.kind == "node" and _SPAWNING.fullmatch(entry.name) is not None and "remove" not in entry.name
 
 
-def _spawns_as_much(old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether a file creates as many robots as before, or includes another file that may do it."""
-    counts = [sum(map(_spawns, outline.entries)) for outline in (old, new)]
+def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether a file creates as many robots as before, or includes another file that may create them."""
+    counts = [sum(map(_is_spawner, outline.entries)) for outline in (old, new)]
     known = {entry.name for entry in old.entries}
     may_include = any(_SPAWNING_FILE.search(entry.name) and entry.name not in known for entry in new.entries)
     return counts[1] >= counts[0] or may_include
@@ -134,19 +134,19 @@ def _publishes_states(outline: LaunchOutline) -> bool:
 
 
 def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether an action of the new file may start the node of a removed one, such as with another condition."""
-    if (entry.kind, entry.name) != (other.kind, other.name) or condition_holds(_condition(other, new)) is False:
+    """Return whether a new action may start the node of a removed one, for example under another condition."""
+    if (entry.kind, entry.name) != (other.kind, other.name) or condition_holds(_resolve_condition(other, new)) is False:
         return False
     if _served_names(entry, old) != _served_names(other, new):
         return False
     return all(
-        _resolved_name(entry.settings.get(setting), old) == _resolved_name(other.settings.get(setting), new)
+        _resolve_name(entry.settings.get(setting), old) == _resolve_name(other.settings.get(setting), new)
         for setting in ("name", NAMESPACE)
     )
 
 
 def addition_reason(entry: Entry) -> Phrase | None:
-    """Return why adding a launch action is a breaking change, or None if it is not."""
+    """Return the reason why adding a launch action is breaking, or None if it is not."""
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _required_reason(entry)
     if entry.kind == READING and not entry.settings and entry.name not in _ALWAYS_SET:
@@ -158,15 +158,15 @@ def _required_reason(argument: Entry) -> Phrase:
     return phrase("callers must pass '{name}'", name=argument.name)
 
 
-def value_reason(name: str, *, is_ros1: bool = False) -> Phrase:
-    """Return why it is breaking that an argument is gone. ROS 1 refuses arguments that a file does not declare."""
+def argument_removal_reason(name: str, *, is_ros1: bool = False) -> Phrase:
+    """Return the reason why removing an argument is breaking. ROS 1 refuses arguments that a file does not declare."""
     if is_ros1:
         return phrase("launch files that pass '{name}' to the file fail", name=name)
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 
 def offers_nothing(entry: Entry) -> bool:
-    """Return whether other programs do not use the node."""
+    """Return whether other programs cannot use anything of the node."""
     patterns = (_USER_INTERFACE.match, _SPAWNING.fullmatch, _SHELL_SCRIPT.fullmatch)
     return any(matches(entry.name) is not None for matches in patterns)
 
@@ -174,7 +174,7 @@ def offers_nothing(entry: Entry) -> bool:
 def setting_reason(
     entry: Entry, setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return why a changed setting of an action is breaking, or None if it is not.
+    """Return the reason why a changed setting of an action is breaking, or None if it is not.
 
     Args:
         entry: the new action.
@@ -192,7 +192,7 @@ def setting_reason(
         return _remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return _renaming_reason(old, new, old_outline, new_outline)
-    if entry.kind in ("node", "include") and setting == CONDITION and (_spawns(entry) or not offers_nothing(entry)):
+    if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
         held = condition_holds(old_outline.resolved(old or ""))
         does_not_hold = condition_holds(new_outline.resolved(new or "")) is False
         return phrase("by default, it does not start any more") if held and does_not_hold else None
@@ -203,7 +203,7 @@ def setting_reason(
         side = side_of(loaded_class(entry) or entry.name, source, new_outline.root)
         if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
-        if old is not None and old_outline.resolved(old) in _targets(entry, new_outline):
+        if old is not None and old_outline.resolved(old) in _remapping_targets(entry, new_outline):
             return None  # another topic of the node has the name now
         return _remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
     if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
@@ -214,18 +214,18 @@ def setting_reason(
     if forwarding is not None:
         return forwarding
     if setting == "arguments":
-        old_names = _names_in(entry, old, old_outline)
-        new_names = _names_in(entry, new, new_outline)
-        gone = [name for name in old_names if name not in new_names]
+        old_names = _names_in_arguments(entry, old, old_outline)
+        new_names = _names_in_arguments(entry, new, new_outline)
+        removed = [name for name in old_names if name not in new_names]
         is_unknown = any(_EXPRESSION in name for name in new_names)
-        return _served_reason(entry, gone, new_outline) if gone and not is_unknown else None
+        return _served_reason(entry, removed, new_outline) if removed and not is_unknown else None
     return _parameter_reason(setting, old, new, old_outline, new_outline)
 
 
 def _parameter_reason(
     setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return why a changed parameter is breaking: others use the frame that it names, or it has another type."""
+    """Return the reason why a changed parameter is breaking: it names a shared frame or topic, or its type differs."""
     if setting == _FRAME_PREFIX:
         old_prefix, new_prefix = old_outline.resolved(old or ""), new_outline.resolved(new or "")
         is_unknown = any(_CODE.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
@@ -246,7 +246,7 @@ def _parameter_reason(
 
 
 def _literal_value(text: str) -> YamlValue | None:
-    """Return the value of a parameter, or None if its type is unknown: a word may be the name of a variable."""
+    """Return the value of a parameter, or None if its type is unknown. A word may be the name of a variable."""
     value = None if "$(" in text else value_of_text(text)
     is_word = value is not None and value.type in (YamlType.TEXT, YamlType.MIXED) and not text.startswith(("'", '"'))
     return None if is_word else value
@@ -265,16 +265,16 @@ def _argument_reason(
     if setting == "default" and old is not None and new is not None:
         return _default_reason(entry, old, new, old_outline, new_outline)
     if setting == "choices" and old is not None and new is not None:
-        gone = [item for item in list_items(old) if item not in list_items(new)]
-        if gone:
-            return phrase("callers that pass '{value}' fail", value=", ".join(gone))
+        removed = [item for item in list_items(old) if item not in list_items(new)]
+        if removed:
+            return phrase("callers that pass '{value}' fail", value=", ".join(removed))
     return None
 
 
 def _default_reason(
     argument: Entry, old: str, new: str, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return why another default is breaking: a node does not start, or a name that others use is another one."""
+    """Return the reason why another default is breaking: a node does not start, or a shared name changes."""
     old_value, new_value = old_outline.resolved(old), new_outline.resolved(new)
     if old_value == new_value:
         return None
@@ -286,7 +286,9 @@ def _default_reason(
     if old_value.lower() in _TRUTH and re.fullmatch(r"[a-z]\w*", new_value.lower()) and new_value.lower() not in _TRUTH:
         return phrase("callers that pass '{value}' fail", value=old_value)
     uses = list(_reasons_of_uses(argument.name, old_outline, new_outline))
-    stopped = list(dict.fromkeys(title(entry) for entry, setting, _ in _importance(uses) if setting == CONDITION))
+    stopped = list(
+        dict.fromkeys(title(entry) for entry, setting, _ in _sort_by_importance(uses) if setting == CONDITION)
+    )
     if len(stopped) > 1:
         return phrase("by default, {entries} do not start any more", entries=joined_first(stopped, MAX_NAMES))
     if stopped:
@@ -297,13 +299,13 @@ def _default_reason(
     return reason
 
 
-def _importance(uses: list[_Use]) -> list[_Use]:
-    """Return uses of an argument with those of static transforms last."""
+def _sort_by_importance(uses: list[_Use]) -> list[_Use]:
+    """Sort the uses of an argument so that static transforms come last."""
     return sorted(uses, key=lambda use: use[0].name.startswith(TRANSFORM_PUBLISHERS))
 
 
 def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[_Use]:
-    """Yield the settings of actions that use an argument and for which its new default is breaking."""
+    """Yield the settings that use an argument and for which its new default is breaking."""
     variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in new_outline.entries:
         if entry.kind == "argument":
@@ -315,21 +317,21 @@ def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchO
                     yield entry, setting, reason
 
 
-def _condition(entry: Entry, outline: LaunchOutline) -> str:
+def _resolve_condition(entry: Entry, outline: LaunchOutline) -> str:
     return outline.resolved(entry.settings.get(CONDITION, ""))
 
 
 def _served_names(entry: Entry, outline: LaunchOutline) -> list[str]:
-    return _names_in(entry, entry.settings.get("arguments"), outline)
+    return _names_in_arguments(entry, entry.settings.get("arguments"), outline)
 
 
-def _names_in(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
+def _names_in_arguments(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
     """Return the controllers or the frame in the arguments of a node, with the defaults of arguments."""
     return served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolved(arguments or "")}, entry.span))
 
 
 def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase | None:
-    """Return why it is breaking that a node does not serve names any more, or None if another one does."""
+    """Return the reason why it is breaking that a node no longer serves names, or None if another node serves them."""
     is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
     others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
     served = {name for other in others for name in _served_names(other, new)}
@@ -344,9 +346,9 @@ def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase
 def _renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    old_name, new_name = _resolved_name(old, old_outline), _resolved_name(new, new_outline)
+    old_name, new_name = _resolve_name(old, old_outline), _resolve_name(new, new_outline)
     if (
-        _after_unknown(old_name) == _after_unknown(new_name)
+        _strip_known_prefix(old_name) == _strip_known_prefix(new_name)
         or _UNKNOWN_NAME.search(new_name)
         or _has_new_variable(old_name, new_name)
     ):
@@ -354,14 +356,14 @@ def _renaming_reason(
     return phrase("programs that use the names of the node, its topics or its services do not find them")
 
 
-def _after_unknown(name: str) -> str:
-    """Return a name from the last variable without a known value, which may begin with ``/``, or the whole name."""
+def _strip_known_prefix(name: str) -> str:
+    """Return the part of a name from its last unknown variable, or the whole name. The value may begin with ``/``."""
     match = _UNKNOWN_NAMESPACE.search(name)
     return name if match is None else match[1]
 
 
 def _is_name_of_program(entry: Entry, name: str) -> bool:
-    """Return whether a node may have a name without being given one, as far as the name of its program shows.
+    """Return whether a name may be the default name of a node, judging by its program.
 
     The program is an executable or the class of a component, such as ``map_server`` and ``nav2::MapServer``.
     """
@@ -371,8 +373,8 @@ def _is_name_of_program(entry: Entry, name: str) -> bool:
     return name_likeness(name, program) >= _MIN_SIMILARITY_OF_NAMES
 
 
-def _resolved_name(text: str | None, outline: LaunchOutline) -> str:
-    """Return a name with the defaults of arguments; empty for a name that is not given."""
+def _resolve_name(text: str | None, outline: LaunchOutline) -> str:
+    """Return a name with the defaults of the arguments; empty for None."""
     resolved = outline.resolved(text or "").strip("/")
     return _NEVER.sub("", resolved).strip("/")
 
@@ -386,7 +388,7 @@ def _remapping_reason(
     *,
     is_known: bool = False,
 ) -> Phrase | None:
-    """Return why it is breaking that a name is remapped otherwise, or None if the name is the same.
+    """Return the reason why another remapping of a name is breaking, or None if the resulting name is the same.
 
     Args:
         source: the name in the node.
@@ -394,7 +396,7 @@ def _remapping_reason(
         new: the new name outside of it; None if it is the same.
         old_outline: the old file.
         new_outline: the new file.
-        is_known: whether the node is known to publish or serve the name, and not only to use it.
+        is_known: whether the node certainly publishes or serves the name.
     """
     old_name = old_outline.resolved(source if old is None else old)
     new_name = new_outline.resolved(source if new is None else new)
@@ -406,18 +408,18 @@ def _remapping_reason(
 
 
 def _has_new_variable(old: str, new: str) -> bool:
-    """Return whether a name has a variable without a known value that the old one does not have."""
+    """Return whether a new name has an unknown variable that the old name lacks."""
     return not set(_VARIABLE.findall(new)) <= set(_VARIABLE.findall(old))
 
 
-def _targets(entry: Entry, outline: LaunchOutline) -> set[str]:
+def _remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
     """Return the names to which an action remaps others."""
     settings = entry.settings.items()
     return {outline.resolved(value) for name, value in settings if name.startswith(REMAPPING)}
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:
-    """Return whether the arguments of nodes contain the names, as a spawner's ``--controller-ros-args`` can."""
+    """Return whether arguments of nodes remap the names, for example ``--controller-ros-args`` of a spawner."""
     words = set(_NAME.findall(names))
     arguments = " ".join(entry.settings.get("arguments", "") for entry in outline.entries)
     return bool(words) and words <= set(_NAME.findall(arguments))

@@ -1,4 +1,4 @@
-"""The actions of the files that a launch file includes, as far as the repository has them."""
+"""Read the files that a launch file includes, if the repository has them."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _USED = re.compile(r"\$\((?:var|arg) (?P<name>[\w./-]+)\)")
 
 
 class IncludedActions:
-    """The actions that a launch file includes.
+    """The actions of the files that a launch file includes.
 
     Args:
         version: the version of the repository.
@@ -59,7 +59,7 @@ class IncludedActions:
         self._outlines: dict[Path, LaunchOutline | None] = {}
 
     def lone_file(self, entry: Entry, other: IncludedActions) -> str | None:
-        """Return the included file with an action, or None if there is none, or if the other version also has one."""
+        """Return the included file that contains an action; None if there is none or the other version has one too."""
         if entry.kind not in _MOVABLE:
             return None
         return None if other._file_with(entry) else self._file_with(entry)
@@ -107,11 +107,11 @@ class IncludedActions:
         return None if file is None or ".." in file.parts or not file.is_file() else file
 
     def started(self, entry: Entry) -> Counter[Program]:
-        """Return what an included file starts by default and other programs use; the file itself if it is unknown."""
+        """Count the shared programs that an included file starts by default; an unknown file counts as one program."""
         return Counter(self._started(entry, self.outline, self._version.file(self._path), 0))
 
     def all_started(self, values: Mapping[str, str] | None = None) -> Counter[Program]:
-        """Return what the launch file starts by default and other programs use, with the files that it includes.
+        """Count the shared programs that the launch file and its included files start by default.
 
         Args:
             values: other defaults of arguments, by name.
@@ -151,7 +151,7 @@ class IncludedActions:
     def undeclared(self) -> dict[str, Entry]:
         """Return the arguments without a default that nothing declares, each with the first action that uses it.
 
-        An argument that a file of another package may declare, or an action that cannot be read, is left out.
+        Arguments that a file of another package may declare, and actions that cannot be read, are left out.
         """
         entries = self.outline.entries
         if any(entry.kind == "action" or (entry.has_value and "$(" in entry.name) for entry in entries):
@@ -189,7 +189,7 @@ def callers_of(version: Version, path: str, name: str) -> Iterator[tuple[LaunchO
 
 
 def _file_below(share: Path, path: str) -> Path | None:
-    """Return a file of a package, whose build may install it in another folder than that of its source."""
+    """Return a file of a package. The build may install it in a folder other than its source folder."""
     if (share / path).is_file() or ".." in Path(path).parts:
         return share / path
     found = [file for file in sorted(share.rglob(Path(path).name)) if file.is_file()]
@@ -197,37 +197,37 @@ def _file_below(share: Path, path: str) -> Path | None:
 
 
 def file_with_moved_action(entry: Entry, versions: Versions, path: str, *, is_removed: bool) -> str | None:
-    """Return another changed launch file to which an action moved, or from which it came; None if there is none.
+    """Return the other changed launch file to or from which an action moved, or None if there is none.
 
     Args:
         entry: the action.
         versions: both versions.
         path: the path of the launch file, in the version that has the action.
-        is_removed: whether the new version of the file does not have the action, and not the old one.
+        is_removed: True if the new version of the file lacks the action, False if the old one does.
     """
     if entry.kind not in ("node", "include"):
         return None
-    key = _key(entry)
+    key = _move_key(entry)
     for file in versions.changed_files[:_MAX_CHANGED]:
         if path in (file.old_path, file.new_path) or not is_launch_file(file.path):
             continue
-        old = _keys(versions.old.file(file.old_path), versions.old.root) if file.old_path else frozenset()
-        new = _keys(versions.new.file(file.new_path), versions.new.root) if file.new_path else frozenset()
+        old = _move_keys(versions.old.file(file.old_path), versions.old.root) if file.old_path else frozenset()
+        new = _move_keys(versions.new.file(file.new_path), versions.new.root) if file.new_path else frozenset()
         if (key in new) > (key in old) if is_removed else (key in old) > (key in new):
             return file.new_path if is_removed else file.old_path
     return None
 
 
-def _key(entry: Entry) -> _Key:
-    """Return what an action keeps if it moves into another file."""
+def _move_key(entry: Entry) -> _Key:
+    """Return the properties that an action keeps when it moves to another file."""
     return entry.kind, entry.name, entry.settings.get("name"), tuple(served_names(entry))
 
 
 @lru_cache(maxsize=256)
-def _keys(file: Path, root: Path) -> frozenset[_Key]:
-    """Return the actions of a file, which does not change during a review."""
+def _move_keys(file: Path, root: Path) -> frozenset[_Key]:
+    """Return the keys of the actions of a file. The result is cached: the file does not change during a review."""
     outline = _read(file, root)
-    return frozenset() if outline is None else frozenset(map(_key, outline.entries))
+    return frozenset() if outline is None else frozenset(map(_move_key, outline.entries))
 
 
 def _read(file: Path, root: Path) -> LaunchOutline | None:

@@ -1,4 +1,4 @@
-"""The code of a launch file in Python besides its actions, in a form that can be compared."""
+"""Normalize the code of a Python launch file besides its actions, so that it can be compared."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import CodePart
-from linkwright.review.launches.text import shortened_text
+from linkwright.review.launches.text import shorten_text
 
 _TRANSPARENT = frozenset(
     {"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes", "TimerAction"}
@@ -26,16 +26,18 @@ _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", 
 
 
 def definitions_of(python: PythonFile) -> list[CodePart]:
-    """Return the statements that give a value to a name that has no other value."""
+    """Return the statements that assign a name that is assigned only once."""
     rest = _Rest(python, ())
     return [
-        CodePart("", _source(node), python.span(node))
-        for node in _statements(python.tree)
+        CodePart("", _unparse(node), python.span(node))
+        for node in _all_statements(python.tree)
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and rest.is_definition(node)
     ]
 
 
-def rest_of(python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> list[CodePart]:
+def code_besides_actions(
+    python: PythonFile, covered: Collection[int], branches: Collection[int] = ()
+) -> list[CodePart]:
     """Return the statements besides the actions, without names of variables, imports, comments and layout.
 
     Args:
@@ -46,20 +48,20 @@ def rest_of(python: PythonFile, covered: Collection[int], branches: Collection[i
     rest = _Rest(python, covered, branches)
     conditions = _failing_conditions(python.tree)
     parts = (
-        CodePart(rest.statement_text(node), _source(_header(node)), python.span(node), conditions.get(id(node), ""))
-        for node in sorted(_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
+        CodePart(rest.statement_text(node), _unparse(_header_of(node)), python.span(node), conditions.get(id(node), ""))
+        for node in sorted(_all_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
     return [part for part in parts if part.text]
 
 
-def _source(node: ast.AST) -> str:
+def _unparse(node: ast.AST) -> str:
     return " ".join(ast.unparse(node).split())
 
 
 def _failing_conditions(tree: ast.AST) -> dict[int, str]:
-    """Return the conditions of the ``if`` statements whose bodies end the launch, by the identity of the statement."""
+    """Return the conditions of the ``if`` statements that end the launch, by the identity of the statement."""
     return {
-        id(statement): _source(branch.test)
+        id(statement): _unparse(branch.test)
         for branch in ast.walk(tree)
         if isinstance(branch, ast.If)
         for statement in branch.body
@@ -75,12 +77,12 @@ def _ends_launch(statement: ast.stmt) -> bool:
     return isinstance(value, ast.Call) and called_name(value) in _EXITS
 
 
-def _statements(tree: ast.AST) -> list[ast.stmt]:
+def _all_statements(tree: ast.AST) -> list[ast.stmt]:
     return [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
 
 
-def _header(node: ast.stmt) -> ast.stmt:
-    """Return a statement with ``...`` in place of the statements in it."""
+def _header_of(node: ast.stmt) -> ast.stmt:
+    """Return a copy of a statement with ``...`` in place of its body."""
     if not any(getattr(node, name, None) for name in _BODIES):
         return node
     header = copy(node)
@@ -98,15 +100,15 @@ class _Rest:
         self._texts: dict[int, str] = {}
 
     def text(self, node: ast.AST) -> str:
-        """Return a part of the code; empty if it only makes actions."""
+        """Return a part of the code in comparable form; empty if it only makes actions."""
         known = self._texts.get(id(node))
         if known is None:
             self._texts[id(node)] = ""  # a name that is defined by itself
-            known = self._texts[id(node)] = shortened_text(self._text(node))
+            known = self._texts[id(node)] = shorten_text(self._text(node))
         return known
 
     def statement_text(self, node: ast.stmt) -> str:
-        """Return a statement without the statements in it; empty if it only makes actions."""
+        """Return a statement without its body in comparable form; empty if it only makes actions."""
         if not any(hasattr(node, name) for name in _BODIES):
             return self.text(node)
         return "" if id(node) in self._branches else self._other(node)
@@ -139,7 +141,7 @@ class _Rest:
         return self._other(node)
 
     def is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
-        """Return whether a statement gives a value to a name that has no other value, which its uses show."""
+        """Return whether a statement assigns a name that is assigned only once. The uses of the name show the value."""
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         return all(
             isinstance(target, ast.Name) and self._python.assigned_expression(target.id) is node.value
@@ -147,7 +149,7 @@ class _Rest:
         )
 
     def _group(self, node: ast.Call) -> str:
-        """Return what a group or launch description contains besides actions."""
+        """Return the contents of a group or launch description besides actions."""
         arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in _CONTENTS)]
         settings = [
             f"{keyword.arg}={self.text(keyword.value)}"

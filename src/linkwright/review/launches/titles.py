@@ -1,4 +1,4 @@
-"""The names of the actions of launch files in sentences."""
+"""Name launch actions in sentences."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _deletion_title(name: str) -> Phrase:
 
 
 def _node_title(entry: Entry, name: str) -> Phrase:
-    """Return the name of a node, and of the controllers or the frame that it serves."""
+    """Return the title of a node with the controllers or the frame that it serves."""
     names = served_names(entry)
     if not names:
         return phrase("node '{name}'", name=name)
@@ -116,7 +116,7 @@ def _controllers(words: Sequence[str]) -> Iterator[str]:
 
 
 def distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
-    """Return the title of an action, with its condition if another one sets the same name."""
+    """Return the title of an action, with its condition if another action sets the same name."""
     condition = entry.settings.get(CONDITION)
     count = sum((other.kind, other.name) == (entry.kind, entry.name) for other in others)
     if entry.kind in ("node", "include", "process") or condition is None or count < 2:
@@ -124,33 +124,33 @@ def distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
     return phrase("{entry} ({items})", entry=title(entry), items=condition)
 
 
-def joined_titles(entries: Sequence[Entry]) -> Phrase:
-    """Return the titles of actions, or the first ones and the number of the others."""
-    return joined_texts(list(map(title, entries)))
+def join_titles(entries: Sequence[Entry]) -> Phrase:
+    """Return the titles of actions as a list, or the first titles and the number of the remaining ones."""
+    return join_texts(list(map(title, entries)))
 
 
-def joined_texts(titles: Sequence[Phrase]) -> Phrase:
-    """Return different titles, or the first ones and the number of the others."""
+def join_texts(titles: Sequence[Phrase]) -> Phrase:
+    """Return distinct titles as a list, or the first titles and the number of the remaining ones."""
     return joined_first(list(dict.fromkeys(titles)), MAX_NAMES)
 
 
-def added_entry(entry: Entry) -> Phrase:
-    """Return that an action was added, with its value if it has only one, or with its settings."""
-    items = _contents(entry)
+def added_entry_text(entry: Entry) -> Phrase:
+    """Return the text that an action was added, with its only value or its settings."""
+    items = _value_or_settings(entry)
     if items is None:
         return phrase("{entry} added", entry=title(entry))
     return phrase("{entry} added: {items}", entry=title(entry), items=items)
 
 
-def removed_entry(entry: Entry) -> Phrase:
-    """Return that an action was removed, with its value if it has only one, or with its settings."""
-    items = _contents(entry)
+def removed_entry_text(entry: Entry) -> Phrase:
+    """Return the text that an action was removed, with its only value or its settings."""
+    items = _value_or_settings(entry)
     if items is None:
         return phrase("{entry} removed", entry=title(entry))
     return phrase("{entry} removed: {items}", entry=title(entry), items=items)
 
 
-def _contents(entry: Entry) -> Phrase | None:
+def _value_or_settings(entry: Entry) -> Phrase | None:
     """Return the value of an action if it has only one, or its settings; None if it has none."""
     if entry.kind == READING:
         return None
@@ -162,14 +162,14 @@ def _contents(entry: Entry) -> Phrase | None:
 
 def settings_text(entry: Entry, limit: int = _MAX_SETTINGS) -> Phrase | None:
     """Return the settings of an action, its condition first, or None if it has none."""
-    names = sorted((name for name in entry.settings if name != "description"), key=_order)
+    names = sorted((name for name in entry.settings if name != "description"), key=_setting_rank)
     if not names:
         return None
     return joined_first([_setting_text(name, entry.settings[name]) for name in names], limit)
 
 
-def _order(setting: str) -> int:
-    """Return the place of a setting among those of an action: what others use and what differs in each node first."""
+def _setting_rank(setting: str) -> int:
+    """Return the rank of a setting in a list: shared names and settings that differ in each node come first."""
     return next((number for number, start in enumerate(_ORDER) if setting.startswith(start)), len(_ORDER))
 
 

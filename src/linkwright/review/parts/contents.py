@@ -144,10 +144,10 @@ def _renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
 
 def _renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[str, str]]:
     """Yield the old and the new names of parameters, if as many have gone as have come with equal defaults."""
-    gone = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
-    come = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
-    if [parameter.default for parameter in gone] == [parameter.default for parameter in come]:
-        for before, after in zip(gone, come, strict=True):
+    removed = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
+    added = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
+    if [parameter.default for parameter in removed] == [parameter.default for parameter in added]:
+        for before, after in zip(removed, added, strict=True):
             yield before.name.lstrip("*"), after.name.lstrip("*")
 
 

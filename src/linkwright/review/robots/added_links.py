@@ -1,4 +1,4 @@
-"""The lines about added links, with the joints that attach them."""
+"""Write the lines about added links, with the joints that attach them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MAX_LINKS = 4
 
 
 class AddedLinks:
-    """The links and joints that a robot has gained.
+    """The added links and joints of a robot.
 
     Args:
         differences: the differences of the robots.
@@ -33,20 +33,20 @@ class AddedLinks:
         }
 
     def is_in_line_of_link(self, difference: Difference) -> bool:
-        """Return whether the line about a link says that a joint was added."""
+        """Return whether the line about an added link already names an added joint."""
         is_joint = (difference.subject, difference.kind) == ("joint", "added")
         return is_joint and any(joint.name == difference.name for joint in self._joints.values())
 
     def sentence(self, difference: Difference) -> Phrase | None:
-        """Return the line about an added link with its contents, or None for other differences."""
+        """Return the line about an added link with its contents; None for other differences."""
         link = self._links.get(difference.name)
         if link is None or (difference.subject, difference.kind) != ("link", "added"):
             return None
-        parts = [*self._place(link.name), *_contents(link)]
+        parts = [*self._parent_and_origin(link.name), *_contents(link)]
         text = phrase("{subject} '{name}' added", subject=term("link"), name=link.name)
         return phrase("{change}: {contents}", change=text, contents=joined(parts)) if parts else text
 
-    def _place(self, name: str) -> Iterator[Phrase]:
+    def _parent_and_origin(self, name: str) -> Iterator[Phrase]:
         joint = self._joints.get(name)
         if joint is not None:
             yield phrase(
@@ -72,7 +72,7 @@ def _contents(link: Link) -> Iterator[Phrase]:
 
 
 def _degrees(angle: float) -> float:
-    """Return an angle in degrees; angles that are written with a rounded pi have none behind the point."""
+    """Return an angle in degrees, rounded to an integer if it was written with a rounded pi."""
     return round(math.degrees(angle), 2) + 0.0
 
 

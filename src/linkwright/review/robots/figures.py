@@ -1,4 +1,4 @@
-"""Quantities of a whole robot, in two versions."""
+"""Compare quantities of a whole robot."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
 
 
 class RobotMeasures:
-    """The quantities of a robot with all joints at the positions at which joint_state_publisher starts.
+    """The quantities of a robot with all joints at the initial positions of joint_state_publisher.
 
     Args:
         robot: the robot.
@@ -171,7 +171,7 @@ class RobotMeasures:
         return self.frames_at(self.sampled_positions(count))
 
     def sampled_positions(self, count: int) -> Array:
-        """Return positions within the limits, which depend only on the old names and the limits of the joints.
+        """Return positions within the limits. They depend only on the old names and the limits of the joints.
 
         Returns:
             Positions in rad or m, shape (count, joints).

@@ -1,4 +1,4 @@
-"""Descriptions that only one version has or can read: the parts of the robot."""
+"""Summarize robots that only one version has or can read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MAX_NAMES = 40
 
 
 def read_lone_robot(version: Version, path: str) -> tuple[Model, Robot] | None:
-    """Return a description of one version with the values of its first caller, or None if it cannot be read."""
+    """Return the model and robot of a description with the values of its first caller, or None if unreadable."""
     sets: Sequence[ArgumentSet] = version.checker().argument_sets(version.file(path), ())
     for arguments in (*sets[:1], ArgumentSet({})):
         model = version.model(path, arguments.values)

@@ -130,13 +130,13 @@ class _Files:
 
     Args:
         version: the version.
-        gone: the paths of modules that only the other version has.
+        removed: the paths of modules that only the other version has.
     """
 
-    def __init__(self, version: Version, gone: Sequence[str]) -> None:
+    def __init__(self, version: Version, removed: Sequence[str]) -> None:
         paths = version.paths((PYTHON_SUFFIX,))
         self.paths = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
-        self._gone = gone
+        self._gone = removed
 
     @cached_property
     def _known(self) -> frozenset[str]:

@@ -83,8 +83,8 @@ def _changed(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:
 def _are_reordered(pairs: Sequence[tuple[Statement, Statement]]) -> bool:
     """Return whether one literal loses a text and another literal gains it."""
     changed = [pair for statements in pairs for pair in _changed(*statements)]
-    gone, come = ({pair[side].value for pair in changed if pair[side].is_text} for side in (0, 1))
-    return not gone.isdisjoint(come)
+    removed, added = ({pair[side].value for pair in changed if pair[side].is_text} for side in (0, 1))
+    return not removed.isdisjoint(added)
 
 
 def _is_same(old: Statement, new: Statement) -> bool:
