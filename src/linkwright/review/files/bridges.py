@@ -98,15 +98,15 @@ def _take_matches(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge
     """
     for keys in (("topic",), ("gz_topic_name", _ROS_TYPE), ("ign_topic_name", _ROS_TYPE)):
         for new_bridge in list(new):
-            key = _key(new_bridge, keys)
-            old_bridge = next((each for each in old if key is not None and _key(each, keys) == key), None)
+            key = _match_key(new_bridge, keys)
+            old_bridge = next((bridge for bridge in old if key is not None and _match_key(bridge, keys) == key), None)
             if old_bridge is not None:
                 old.remove(old_bridge)
                 new.remove(new_bridge)
                 yield old_bridge, new_bridge
 
 
-def _key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
+def _match_key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
     values = [bridge.topic if name == "topic" else bridge.settings.get(name) for name in names]
     known = tuple(value for value in values if value)
     return known if len(known) == len(names) else None

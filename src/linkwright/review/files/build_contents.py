@@ -16,11 +16,11 @@ _SHOWN = (
 
 def build_contents(facts: BuildFacts) -> Phrase | None:
     """Return the installed targets and files and the tests of a build file, or None if there are none."""
-    parts = list(_parts(facts))
+    parts = list(_content_parts(facts))
     return joined(parts, "; ") if parts else None
 
 
-def _parts(facts: BuildFacts) -> Iterator[Phrase]:
+def _content_parts(facts: BuildFacts) -> Iterator[Phrase]:
     installed = {fact.name for fact in facts.facts if fact.kind in INSTALLED_KINDS}
     for kind in _SHOWN:
         left_out = installed if kind in BUILT_KINDS else ()

@@ -11,19 +11,19 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import EMPTY, change_text, shortened
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.list_changes import EMPTY, change_text, shorten
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
 _MAX_RESTS = 6
-"""The number of other commands up to which their texts are shown."""
+"""The maximum number of other commands whose text is shown."""
 _MAX_TEXT = 200
 _MIN_FOLDER = 3
-"""The number of parts from which a folder is named instead of its files; paths in packages have fewer."""
+"""The minimum number of path parts of a folder that replaces its files in a report."""
 _LONG_LIST = 5
-"""The number of words of a command from which only the different ones are shown."""
+"""The minimum number of words of a command of which only the differing words are shown."""
 _DOWNLOADS = ("externalproject_add", "fetchcontent_declare")
-"""The commands that get the sources of other projects, from the address and version after their keywords."""
+"""The commands that download other projects, with an address and a version after keywords."""
 _KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
 
 
@@ -86,11 +86,11 @@ class FactKind(Enum):
 INSTALLED_KINDS = (FactKind.EXECUTABLE, FactKind.LIBRARY)
 """The kinds of targets that are installed."""
 BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
-"""The kinds of targets that are built, and that matter by themselves if they are not installed."""
+"""The kinds of built targets that are reported even if they are not installed."""
 _CONDITIONAL = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
 """The kinds whose conditions are shown when they are added or removed."""
 ANY_VERSION = "any version"
-"""The value of a package that is found in any version."""
+"""The value for a package without a required version."""
 
 
 @dataclass(frozen=True)
@@ -206,7 +206,7 @@ def compare_build_files(
     Args:
         pair: the versions.
         read: the function that returns the facts of a version, from its path in the repository.
-        compare_more: a function that compares the parts that only this kind of build file has.
+        compare_more: a function that compares parts specific to this kind of build file.
     """
     sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
     versions = {version.file(path): (version, path) for version, path in sides}
@@ -242,16 +242,16 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
         if kind in BUILT_KINDS:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
-            added, removed = ([fact for fact in each if fact.name not in installed] for each in (added, removed))
+            added, removed = ([fact for fact in facts if fact.name not in installed] for facts in (added, removed))
         _report_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
         if added:
             reason = None
             if kind is FactKind.STOP:
                 reason = phrase("the build fails under a condition under which it did not fail before")
-            pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
+            pair.add(_facts_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
         if removed:
             location = pair.location(removed[0].span, is_old=True)
-            pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
+            pair.add(_facts_sentence(kind, removed, is_added=False), location, kind.reason)
     _report_conditions(pair, conditions)
     _compare_files(pair, old, new)
     _compare_rest(pair, old, new)
@@ -270,9 +270,9 @@ def _report_renamed(
         added: the facts of the new version.
         targets: the new names of targets that have the same sources, by old name.
     """
-    names = PackageNames(renamed_packages(pair.versions))
+    names = PackageNames(find_renamed_packages(pair.versions))
     for old in list(removed):
-        new = next((fact for fact in added if fact.name == names.derived(old.name)), None)
+        new = next((fact for fact in added if fact.name == names.rename_derived(old.name)), None)
         new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
         new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
         if new is not None:
@@ -315,7 +315,7 @@ def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) ->
     return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
 
 
-def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
+def _facts_sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
     texts = [_fact_text(fact) for fact in facts]
     return _list_sentence(kind.title, texts, is_added=is_added)
 
@@ -392,7 +392,7 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             if new.unknown <= old.unknown:
                 removed.append(target)
         elif new_source == source and old.place(target) != new.place(new_target):
-            places = _folder(target), _folder(new_target)
+            places = _folder_name(target), _folder_name(new_target)
             is_renamed = places[0] == places[1]
             moved.setdefault(places, []).append(
                 f"{_file_name(target)} -> {_file_name(new_target)}" if is_renamed else _file_name(target)
@@ -445,7 +445,7 @@ def files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list
     return list(names)
 
 
-def _folder(path: str) -> str:
+def _folder_name(path: str) -> str:
     return PurePosixPath(path).parent.as_posix()
 
 
@@ -472,10 +472,10 @@ def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         elif old_texts and new_texts:
             pair.add(_word_changes_text(name, old_text, new_text), None)
         elif new_texts:
-            text = phrase("{parameter} added: {items}", parameter=name, items=shortened(new_text, _MAX_TEXT))
+            text = phrase("{parameter} added: {items}", parameter=name, items=shorten(new_text, _MAX_TEXT))
             pair.add(text if new_text else phrase("{parameter} added", parameter=name), None)
         else:
-            text = phrase("{parameter} removed: {items}", parameter=name, items=shortened(old_text, _MAX_TEXT))
+            text = phrase("{parameter} removed: {items}", parameter=name, items=shorten(old_text, _MAX_TEXT))
             pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
 
 

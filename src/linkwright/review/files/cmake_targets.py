@@ -43,11 +43,11 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
             if argument.text.isupper():
                 continue  # a keyword, such as PUBLIC
             if command.name in _LINK_COMMANDS:
-                parts.libraries.setdefault(_library_name(argument.text, command.name), _span(argument))
+                parts.libraries.setdefault(_library_name(argument.text, command.name), _argument_span(argument))
             elif not is_open(argument.text) and (
                 command.name not in _TEST_COMMANDS or _TEST_SOURCE.fullmatch(argument.text)
             ):
-                parts.sources.setdefault(within_package(argument.text, command.folder), _span(argument))
+                parts.sources.setdefault(within_package(argument.text, command.folder), _argument_span(argument))
     return targets
 
 
@@ -61,7 +61,7 @@ def _library_name(text: str, command: str) -> str:
     return text if text.startswith("$<") else text.partition("::")[0]
 
 
-def _span(argument: Argument) -> Span:
+def _argument_span(argument: Argument) -> Span:
     return argument.source.span(argument.start, argument.end)
 
 

@@ -10,12 +10,12 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import EnvironmentVariables
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.xmltree import Element
 
 _VERSIONS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
 _EXPORTED = frozenset({"depend", "build_export_depend", "buildtool_export_depend"})
-"""The tags of dependencies that packages that depend on the package have, too, when they are built."""
+"""The tags of dependencies that dependents of the package also need to build."""
 _EXECUTION = frozenset({"depend", "exec_depend", "run_depend"})
 _VARIABLE = re.compile(r"\$(\w+)")
 
@@ -40,9 +40,9 @@ class _Edit(NamedTuple):
 
 def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
     """Report changed dependencies and conditions, with the same change of several packages in one line."""
-    names = PackageNames(renamed_packages(pair.versions))
-    new_elements = _elements(new)
-    old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements(old).items()}
+    names = PackageNames(find_renamed_packages(pair.versions))
+    new_elements = _elements_by_key(new)
+    old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements_by_key(old).items()}
     edits: dict[_Edit, list[_Key]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
         before, after = (
@@ -60,7 +60,7 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
     for edit in sorted(edits, key=_sort_key):
         _report(pair, edit, edits[edit], new_elements if edit.new_tags else old_elements, _lost_reason(old))
     old_variables, new_variables = (
-        EnvironmentVariables(_variables(elements)) for elements in (old_elements, new_elements)
+        EnvironmentVariables(_condition_variables(elements)) for elements in (old_elements, new_elements)
     )
     old_variables.compare(pair, new_variables)
 
@@ -118,7 +118,7 @@ def _lost_reason(manifest: Manifest) -> Phrase:
     return phrase("packages that have them only through this package do not build")
 
 
-def _elements(manifest: Manifest) -> _Elements:
+def _elements_by_key(manifest: Manifest) -> _Elements:
     elements: dict[_Key, list[Element]] = {}
     for dependency in manifest.dependencies:
         elements.setdefault(_Key(dependency.tag, dependency.name), []).append(dependency.element)
@@ -156,7 +156,7 @@ def _condition_parts(element: Element) -> Iterator[str]:
         yield f"if {condition}"
 
 
-def _variables(elements: _Elements) -> Iterator[tuple[str, Span | None]]:
+def _condition_variables(elements: _Elements) -> Iterator[tuple[str, Span | None]]:
     """Yield the environment variables in conditions, each with its location."""
     for element in (element for group in elements.values() for element in group):
         for name in _VARIABLE.findall(element.attributes.get("condition", "")):

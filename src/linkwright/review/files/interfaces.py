@@ -21,8 +21,8 @@ _SEPARATOR = "---"
 _MIN_RENUMBERED = 3
 """The minimum number of constants with other values that are summarized in one line. An inserted value renumbers those
 below."""
-_PARTS = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
-"""The names of the structures of a message, a service and an action, in front of the names of fields."""
+_PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
+"""The prefixes of field names: the structures of a message, a service and an action."""
 
 
 def compare_interfaces(pair: FilePair) -> None:
@@ -36,7 +36,7 @@ def compare_interfaces(pair: FilePair) -> None:
         return
     old, new = map(structures_of, definitions)
     is_ros1 = _is_ros1(pair.new_file)
-    for index, (old_part, new_part, name) in enumerate(zip(old, new, _PARTS[len(new)], strict=True)):
+    for index, (old_part, new_part, name) in enumerate(zip(old, new, _PART_PREFIXES[len(new)], strict=True)):
         places = _Places(pair, index)
         _compare_fields(pair, old_part.fields, new_part.fields, name, places)
         _compare_constants(pair, old_part.constants, new_part.constants, name, places, is_ros1=is_ros1)
@@ -47,7 +47,7 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     parts = structures_of(_read(version.file(path)))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
-        for structure, part in zip(parts, _PARTS[len(parts)], strict=True)
+        for structure, part in zip(parts, _PART_PREFIXES[len(parts)], strict=True)
         for field in structure.fields
     ]
     names += [f"{constant.name} = {constant.value!s}" for structure in parts for constant in structure.constants]

@@ -13,11 +13,11 @@ from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
-_PROGRAMS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
+_PROGRAM_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
 _SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
-_NAMES = re.compile(r"(^|[._])names?$")
-"""The keys of lists of names. Items of other lists, such as modes, are words that many programs use."""
+_NAME_PARAMETER = re.compile(r"(^|[._])names?$")
+"""The keys of lists of names. Other lists, such as modes, contain words that many programs use."""
 _NAME = re.compile(r"[A-Za-z_][\w/.-]{3,}")
 
 
@@ -53,7 +53,7 @@ class KeyReaders:
             old: the old list.
             new: the new list.
         """
-        if not (old.is_list and new.is_list) or not _NAMES.search(parameter):
+        if not (old.is_list and new.is_list) or not _NAME_PARAMETER.search(parameter):
             return None
         kept = set(list_items(new.text))
         removed = [
@@ -70,7 +70,7 @@ class KeyReaders:
     def _is_named(self) -> bool:
         """Whether a program contains the name of the file."""
         name = PurePosixPath(self.path).name
-        return any(name in self.versions.new.text(path) for path in self._paths(_PROGRAMS, ()))
+        return any(name in self.versions.new.text(path) for path in self._paths(_PROGRAM_SUFFIXES, ()))
 
     @cached_property
     def _readers(self) -> list[tuple[str, str]]:

@@ -12,8 +12,8 @@ from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
-from linkwright.review.list_changes import excerpts
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.list_changes import differing_excerpts
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element, Text
@@ -75,7 +75,7 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
             element = new.root.first(tag) or new.root
             pair.add(text, pair.location(element.span()), reason if tag == "name" else None)
     for tag in ("maintainer", "author"):
-        old_addresses, new_addresses = (_addresses(manifest, tag) for manifest in manifests)
+        old_addresses, new_addresses = (_joined_addresses(manifest, tag) for manifest in manifests)
         if old_addresses != new_addresses and _joined_text(old, tag) == _joined_text(new, tag):
             text = phrase("email of {tag}: {old} -> {new}", tag=tag, old=old_addresses or "-", new=new_addresses or "-")
             pair.add(text, pair.location((new.root.first(tag) or new.root).span()))
@@ -88,9 +88,9 @@ def _compare_descriptions(pair: FilePair, old: Manifest, new: Manifest) -> None:
     old_text, new_text = ("" if element is None else _plain_text(element) for element in elements)
     location = pair.location((elements[1] or new.root).span())
     if old_text != new_text:
-        before, after = excerpts(old_text, new_text)
+        before, after = differing_excerpts(old_text, new_text)
         pair.add(phrase("description: {old} -> {new}", old=before or "-", new=after or "-"), location)
-    elif _markup(elements[0]) != _markup(elements[1]):
+    elif _read_markup(elements[0]) != _read_markup(elements[1]):
         pair.add(phrase("markup of the description changed"), location)
 
 
@@ -108,7 +108,7 @@ def _iterate_texts(element: Element) -> Iterator[str]:
             yield child.data
 
 
-def _markup(element: Element | None) -> list[Hashable]:
+def _read_markup(element: Element | None) -> list[Hashable]:
     """Return the tags and attributes of the elements in a description."""
     parts = () if element is None else element.walk()
     return [(part.tag, tuple(sorted(part.attributes.items()))) for part in parts if part is not element]
@@ -122,24 +122,24 @@ def _joined_text(manifest: Manifest, tag: str) -> str:
     return ", ".join(" ".join(element.text().split()) for element in manifest.root.elements(tag))
 
 
-def _addresses(manifest: Manifest, tag: str) -> str:
+def _joined_addresses(manifest: Manifest, tag: str) -> str:
     return ", ".join(element.attributes.get("email", "") for element in manifest.root.elements(tag))
 
 
 def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
     """Report added, removed and changed ``<export>`` elements, such as the paths of plugin descriptions."""
     old_exports, new_exports = (
-        {_export_text(element): element for element in _exports(manifest)} for manifest in (old, new)
+        {_export_text(element): element for element in _read_exports(manifest)} for manifest in (old, new)
     )
-    names = PackageNames(renamed_packages(pair.versions))
+    names = PackageNames(find_renamed_packages(pair.versions))
     removed = [element for text, element in old_exports.items() if text not in new_exports]
     added = [element for text, element in new_exports.items() if text not in old_exports]
     for element in list(removed):
-        other = next((other for other in added if other.tag == names.of_package(element.tag)), None)
-        if other is not None:
+        successor = next((successor for successor in added if successor.tag == names.of_package(element.tag)), None)
+        if successor is not None:
             removed.remove(element)
-            added.remove(other)
-            _compare_attributes(pair, element, other)
+            added.remove(successor)
+            _compare_attributes(pair, element, successor)
     for element in added:
         pair.add(phrase("export added: {export}", export=_export_text(element)), pair.location(element.span()))
     for element in removed:
@@ -171,7 +171,7 @@ def _compare_attributes(pair: FilePair, old: Element, new: Element) -> None:
         pair.add(text, location)
 
 
-def _exports(manifest: Manifest) -> list[Element]:
+def _read_exports(manifest: Manifest) -> list[Element]:
     export = manifest.root.first("export")
     return [] if export is None else [element for element in export.elements() if element.tag != "build_type"]
 

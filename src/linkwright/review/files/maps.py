@@ -18,11 +18,11 @@ from linkwright.review.list_changes import change_text
 from linkwright.review.versions import Version
 
 IMAGE_SUFFIXES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".gif")
-"""The ends of the names of files that can be the image of a map."""
-_KEYS = tuple(re.compile(rf"^{key}\s*:", re.MULTILINE) for key in ("image", "resolution", "origin"))
+"""The name endings of files that can be the image of a map."""
+_KEY_PATTERNS = tuple(re.compile(rf"^{key}\s*:", re.MULTILINE) for key in ("image", "resolution", "origin"))
 _MAX_BYTES = 100_000
 _MAX_FILES = 100
-"""The number of YAML files in a folder that are searched for the one of an image."""
+"""The maximum number of YAML files in a folder that are searched for the map of an image."""
 
 
 def is_map(file: Path) -> bool:
@@ -33,7 +33,7 @@ def is_map(file: Path) -> bool:
         text = file.read_text("utf-8", errors="replace")
     except OSError:
         return False
-    return all(key.search(text) for key in _KEYS)
+    return all(key.search(text) for key in _KEY_PATTERNS)
 
 
 def map_of_image(version: Version, path: str) -> str | None:
@@ -41,9 +41,13 @@ def map_of_image(version: Version, path: str) -> str | None:
     file = version.file(path)
     if PurePosixPath(path).suffix.lower() not in IMAGE_SUFFIXES:
         return None
-    for other in sorted(file.parent.glob("*.y*ml"))[:_MAX_FILES]:
-        if is_map(other) and _try_read_map_yaml(other) is not None and read_map_yaml(other).image.name == file.name:
-            return version.relative(other)
+    for yaml_file in sorted(file.parent.glob("*.y*ml"))[:_MAX_FILES]:
+        if (
+            is_map(yaml_file)
+            and _try_read_map_yaml(yaml_file) is not None
+            and read_map_yaml(yaml_file).image.name == file.name
+        ):
+            return version.relative(yaml_file)
     return None
 
 
@@ -66,7 +70,7 @@ def compare_map_files(pair: FilePair) -> None:
     maps = pair.read(read_map_yaml)
     if maps is None:
         return
-    for name, old_text, new_text in _settings(*maps):
+    for name, old_text, new_text in _changed_settings(*maps):
         if old_text != new_text:
             pair.add(change_text(name, old_text, new_text), None)
     old_size, new_size = (_size_text(content) for content in maps)
@@ -77,7 +81,7 @@ def compare_map_files(pair: FilePair) -> None:
         _compare_cells(pair, old_image, new_image)
 
 
-def _settings(old: MapYaml, new: MapYaml) -> Iterator[tuple[str, str, str]]:
+def _changed_settings(old: MapYaml, new: MapYaml) -> Iterator[tuple[str, str, str]]:
     yield "image", old.image.name, new.image.name
     yield "resolution", f"{old.resolution:g} m", f"{new.resolution:g} m"
     yield "origin", _format_numbers(old.origin), _format_numbers(new.origin)

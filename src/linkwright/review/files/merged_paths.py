@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 
 _MAX_WORDS = 3
-"""The number of different words that are shown."""
+"""The maximum number of differing words that are shown."""
 
 
 class MergedPaths:

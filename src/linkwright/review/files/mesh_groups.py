@@ -32,10 +32,10 @@ def _join_subjects(subjects: Sequence[Subject]) -> Subject:
     first = subjects[0]
     change: Change = first.changes[0]
     folder = f"{PurePosixPath(first.path).parent}/"
-    return replace(first, path=folder, changes=[replace(change, sentence=_sentence(subjects))])
+    return replace(first, path=folder, changes=[replace(change, sentence=_group_sentence(subjects))])
 
 
-def _sentence(subjects: Sequence[Subject]) -> Phrase:
+def _group_sentence(subjects: Sequence[Subject]) -> Phrase:
     count, names = len(subjects), joined_first((PurePosixPath(subject.path).name for subject in subjects), MAX_NAMES)
     first = subjects[0]
     if first.old_path is None:
@@ -51,10 +51,10 @@ def _sentence(subjects: Sequence[Subject]) -> Phrase:
             folder=f"{old_folder}/",
             names=names,
         )
-    pairs = joined_first(_renames(subjects), MAX_NAMES)
+    pairs = joined_first(_rename_texts(subjects), MAX_NAMES)
     return counted("{count} mesh renamed: {names}", "{count} meshes renamed: {names}", count, names=pairs)
 
 
-def _renames(subjects: Sequence[Subject]) -> Iterator[str]:
+def _rename_texts(subjects: Sequence[Subject]) -> Iterator[str]:
     for subject in subjects:
         yield f"{PurePosixPath(subject.old_path or '').name} -> {PurePosixPath(subject.path).name}"

@@ -26,12 +26,12 @@ from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import with_includes
 from linkwright.review.files.yaml_lists import item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, compose_yaml, read_yaml_text, yaml_values
-from linkwright.review.list_changes import shortened
+from linkwright.review.list_changes import shorten
 from linkwright.review.merging import common_reason
 from linkwright.review.versions import Version
 
 _MAX_VALUES = 32
-"""The number of values that the line about an added file shows, divided among the nodes or keys."""
+"""The maximum number of values in the line about an added file, divided among the nodes or keys."""
 _MIN_VALUES = 3
 _MAX_VALUE = 60
 _NAMES_OF_ITEMS = ("name", "id")
@@ -84,7 +84,7 @@ def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     limit = max(_MIN_VALUES, _MAX_VALUES // len(parts))
     texts: list[Phrase] = []
     for part, values in parts.items():
-        items = [shortened(item, _MAX_VALUE) for item in _lone_content(part, values)]
+        items = [shorten(item, _MAX_VALUE) for item in _lone_content(part, values)]
         if part in values:
             texts.append(phrase("{parameter} {value}", parameter=part, value=items[0]))
         else:
@@ -132,8 +132,8 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)
         reasons = (
-            moveit.removal_reason(each) or rules.removal_reason(each, value.text)
-            for each, value in values_below.items()
+            moveit.removal_reason(inner_name) or rules.removal_reason(inner_name, value.text)
+            for inner_name, value in values_below.items()
         )
         reason = next((reason for reason in reasons if reason is not None), None)
         reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new_keys))
@@ -213,8 +213,8 @@ def _report_renamed(
         kind = None if reason is None else reason.template
         groups.setdefault((edit_of(old_part, new_part), kind), []).append(change)
     for first, *others in groups.values():
-        names = tuple(f"{each.sentence.arguments['old']} -> {each.sentence.arguments['name']}" for each in others)
-        reason = common_reason(each.reason for each in (first, *others))
+        names = tuple(f"{change.sentence.arguments['old']} -> {change.sentence.arguments['name']}" for change in others)
+        reason = common_reason(change.reason for change in (first, *others))
         pair.changes.append(replace(first, reason=reason, other_names=names))
     return with_new_parts(old, renamed)
 

@@ -11,21 +11,21 @@ from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
 _FRAMES = re.compile(r"(^|[._])frame_id$")
-"""The parameters with frames that any node offers to other programs."""
+"""The parameters that name a frame which the node publishes."""
 _USED_FRAMES = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
-"""The parameters with frames that localization and navigation only use. Controllers publish them."""
+"""The parameters that name a frame which localization and navigation only use. Controllers publish it."""
 _TRANSFORMS = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
 """The parameters that switch a transform of a node on and off."""
 _JOINTS = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
-"""The parameters with joints that a controller offers. Other nodes only use them."""
+"""The parameters that name joints of a controller. Other nodes only use the joints."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
-"""The parameters with the names of controllers that a program loads or commands."""
+"""The parameters that name controllers which a program loads or commands."""
 _CLASS = re.compile(r"\w+/\w+")
-"""The class of a plugin as ROS 1 writes it."""
+"""The class of a plugin in the notation of ROS 1."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
@@ -33,7 +33,7 @@ _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
 _NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 _PLUGINS = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
-"""The parameters with the names of plugins, which trees of behaviors and goals name."""
+"""The parameters that list plugin names, which behavior trees and goals use."""
 _SEPARATOR = re.compile(r"(?<=.)[.\[]")
 """The separators of the names in a path."""
 _SUBSTITUTION = re.compile(r"\\\$\\\([\w\\ -]+\\\)")
@@ -52,8 +52,8 @@ class NameRules:
 
     def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
         self._new_nodes = {node for name in new if (node := node_of_parameter(name)) is not None}
-        self._controllers = {*controllers(old), *controllers(new)}
-        self._new_controllers = set(controllers(new))
+        self._controllers = {*find_controllers(old), *find_controllers(new)}
+        self._new_controllers = set(find_controllers(new))
         self._new_parts = {part for name in new for part in part_names(name)}
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
@@ -188,7 +188,7 @@ def _plugin_reason(names: Collection[str]) -> Phrase:
     return phrase("programs that name the plugins {names} do not find them", names=quoted_names(sorted(names)))
 
 
-def controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+def find_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
     """Yield the names of the controllers whose types a file sets."""
     for name in values:
         match = _CONTROLLER_TYPE.fullmatch(name) or _OWN_TYPE.fullmatch(name)
@@ -196,9 +196,9 @@ def controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
             yield match["controller"]
 
 
-def all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+def find_all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
     """Yield the names of the ROS 2 and ROS 1 controllers whose types a file sets."""
-    yield from controllers(values)
+    yield from find_controllers(values)
     yield from map(_slash_separated, _ros1_controllers({name: value.text for name, value in values.items()}))
 
 
@@ -238,7 +238,7 @@ def _renamed_node_reason(part: str, new_part: str, values: Mapping[str, YamlValu
     """
     inside = next((name for name in values if _NODE.match(name) and name.startswith(f"{part}.")), None)
     match = None if inside is None else _NODE.match(inside)
-    if inside is None or match is None or len(match[0]) < len(part) or match["node"] in controllers(values):
+    if inside is None or match is None or len(match[0]) < len(part) or match["node"] in find_controllers(values):
         return None
     new_node = node_of_parameter(f"{new_part}{inside.removeprefix(part)}")
     if new_node is None or matches_node(new_node, match["node"]) or any(word in match["node"] for word in _ANY):

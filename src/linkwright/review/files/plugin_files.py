@@ -11,7 +11,7 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 
@@ -36,17 +36,17 @@ def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
 
     Moving a class to another file is not a change.
     """
-    old = _classes(versions.old, [file.old_path for file in changed_files])
-    new = _classes(versions.new, [file.new_path for file in changed_files])
+    old = _declared_classes(versions.old, [file.old_path for file in changed_files])
+    new = _declared_classes(versions.new, [file.new_path for file in changed_files])
     changes: dict[str, list[Change]] = {}
-    names = PackageNames(renamed_packages(versions))
+    names = PackageNames(find_renamed_packages(versions))
     renamed = _find_renamed_classes(old, new, names)
     for old_name, name in renamed.items():
         text = phrase("plugin class '{old}' renamed to '{new}'", old=old_name, new=name)
         changes.setdefault(new[name].path, []).append(Change(text, Effect.BREAKING, _LOST, new[name].location))
     old = {renamed.get(name, name): plugin for name, plugin in old.items()}
     for name, plugin in new.items():
-        for change in _changes(name, old.get(name), plugin, names):
+        for change in _find_changes(name, old.get(name), plugin, names):
             changes.setdefault(plugin.path, []).append(change)
     for name, plugin in old.items():
         if name not in new:
@@ -61,7 +61,7 @@ def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         yield Subject(SubjectKind.PLUGINS, path, file.old_path, file.new_path, changes[path])
 
 
-def _classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
+def _declared_classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
     """Return the classes that plugin descriptions declare, by the name that programs load."""
     classes: dict[str, _PluginClass] = {}
     for path in paths:
@@ -111,8 +111,10 @@ def _find_renamed_classes(
     added = {name: plugin for name, plugin in new.items() if name not in old}
     renamed: dict[str, str] = {}
     for old_name, plugin in removed.items():
-        same_type = [name for name, other in added.items() if plugin.type and other.type == names.derived(plugin.type)]
-        derived = names.derived(old_name)
+        same_type = [
+            name for name, other in added.items() if plugin.type and other.type == names.rename_derived(plugin.type)
+        ]
+        derived = names.rename_derived(old_name)
         new_name = derived if derived in added else same_type[0] if len(same_type) == 1 else None
         if new_name is not None:
             renamed[old_name] = new_name
@@ -120,18 +122,18 @@ def _find_renamed_classes(
     return renamed
 
 
-def _changes(name: str, old: _PluginClass | None, new: _PluginClass, names: PackageNames) -> Iterator[Change]:
+def _find_changes(name: str, old: _PluginClass | None, new: _PluginClass, names: PackageNames) -> Iterator[Change]:
     if old is None:
         yield Change(phrase("plugin class '{name}' added", name=name), location=new.location)
         return
-    if names.derived(old.base) != new.base:
+    if names.rename_derived(old.base) != new.base:
         text = phrase("plugin class '{name}': base class {old} -> {new}", name=name, old=old.base, new=new.base)
         reason = phrase("programs that load the class as the old base class do not start")
         yield Change(text, Effect.BREAKING, reason, new.location)
-    if names.derived(old.type) != new.type:
+    if names.rename_derived(old.type) != new.type:
         text = phrase("plugin class '{name}': type {old} -> {new}", name=name, old=old.type, new=new.type)
         yield Change(text, location=new.location)
-    if _library_name(names.derived(old.library)) != _library_name(new.library):
+    if _library_name(names.rename_derived(old.library)) != _library_name(new.library):
         text = phrase("plugin class '{name}': library {old} -> {new}", name=name, old=old.library, new=new.library)
         yield Change(text, location=new.location)
 

@@ -51,7 +51,7 @@ def read_setup_cfg(version: Version, path: str) -> BuildFacts:
     for folder, lines in sections.get("options.data_files", {}).items():
         _add_files(facts, version, folder, lines.splitlines())
     settings = {**sections.get("metadata", {}), **sections.get("options", {})}
-    facts.facts += _settings(settings)
+    facts.facts += _setting_facts(settings)
     for section, option in _SCRIPT_FOLDERS:
         value = sections.get(section, {}).get(option, "")
         if value:
@@ -78,7 +78,7 @@ def read_pyproject(version: Version, path: str) -> BuildFacts:
         facts.facts += _entry_points(group, entries.items() if isinstance(entries, Mapping) else ())
     for folder, patterns in _find_table(document, "tool", "setuptools", "data-files").items():
         _add_files(facts, version, folder, patterns if isinstance(patterns, list) else ())
-    facts.facts += _settings(project)
+    facts.facts += _setting_facts(project)
     return facts
 
 
@@ -104,7 +104,7 @@ def _entry_points(group: str, entries: Iterable[tuple[object, object]]) -> Itera
             yield Fact(FactKind.ENTRY_POINT, f"{group}: {name}", function)
 
 
-def _settings(settings: Mapping[str, object]) -> Iterator[Fact]:
+def _setting_facts(settings: Mapping[str, object]) -> Iterator[Fact]:
     for name in _SHOWN:
         value = settings.get(name)
         if isinstance(value, str) and value.strip():

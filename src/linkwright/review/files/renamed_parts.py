@@ -12,18 +12,18 @@ from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.merging import name_edit
 
 _MIN_FACTS = 6
-"""The minimum number of parameters and values of a part that can be recognized under another name."""
+"""The minimum number of parameters and values by which a renamed part is recognized."""
 _MIN_SIMILARITY = 0.6
 _MIN_ALIKE = 2
-"""The minimum number of neighboring parts, renamed in the same way, that need not have many values."""
+"""The minimum number of sibling parts with the same edit that are recognized without many values."""
 _MAX_PAIRS = 2_500
-"""The maximum number of pairs of old and new neighboring parts whose names are compared."""
+"""The maximum number of pairs of old and new sibling parts whose names are compared."""
 _MAX_NEIGHBORS = 200
-"""The maximum number of new parts beside a part that are compared with it."""
+"""The maximum number of new sibling parts that are compared with a part."""
 _MAX_PARTS = 60
 """The maximum number of parts of either version for which moved parts are searched."""
 _ITEM = re.compile(r"\[(old )?\d+\]$")
-"""The end of the path of an item of a list that has no name."""
+"""The end of the path of a list item without a name."""
 _NUMBER_OR_TRUTH = re.compile(r"[^=]*=([-+.,\s\d\[\]e]*|true|false)", re.IGNORECASE)
 """A name and a value that many parts can have in common, such as a limit."""
 _Facts = Counter[str]
@@ -94,7 +94,7 @@ def _find_renamed_alike(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
                 is_of_all
                 and all(_strip_own_name(old[first]) == _strip_own_name(new[second]) for first, second in pairs)
             ):
-                pairs = [pair for pair in pairs if _similarity(old[pair[0]], new[pair[1]]) >= _MIN_SIMILARITY]
+                pairs = [pair for pair in pairs if _facts_similarity(old[pair[0]], new[pair[1]]) >= _MIN_SIMILARITY]
             if len(pairs) >= _MIN_ALIKE:
                 used.update(name for pair in pairs for name in pair)
                 yield from pairs
@@ -135,7 +135,7 @@ def _match_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict
         count = shared[old_name, new_name]
         if old[old_name].total() < _MIN_FACTS or count < max(most[old_name], most[new_name]):
             continue
-        similarity = _similarity(old[old_name], new[new_name])
+        similarity = _facts_similarity(old[old_name], new[new_name])
         if similarity >= _MIN_SIMILARITY:
             is_longer = old_name.startswith(new_name) or new_name.startswith(old_name)
             ranked.append(((count, is_longer, similarity), old_name, new_name))
@@ -184,7 +184,7 @@ def _find_moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterato
                 places = parent_of(old_name), parent_of(new_name)
                 if _last_name(new_name) != _last_name(old_name) or _is_inside(new_name, moved.values()):
                     continue
-                is_like = first.total() >= _MIN_FACTS and _similarity(first, second) >= _MIN_SIMILARITY
+                is_like = first.total() >= _MIN_FACTS and _facts_similarity(first, second) >= _MIN_SIMILARITY
                 if is_like if is_first else places in parents:
                     moved[old_name] = new_name
                     parents.add(places)
@@ -241,12 +241,12 @@ def _with_inner_parts(parts: Mapping[str, _Facts], values: Mapping[str, YamlValu
         is_inside = False
         for part in part_names(name)[:-1]:
             if is_inside:
-                result.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+                result.setdefault(part, Counter()).update(_value_facts(name.removeprefix(part), value))
             is_inside = is_inside or part in parts
     return result
 
 
-def _similarity(first: _Facts, second: _Facts) -> float:
+def _facts_similarity(first: _Facts, second: _Facts) -> float:
     return 2 * (first & second).total() / (first.total() + second.total())
 
 
@@ -257,9 +257,9 @@ def _lone_parts(values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]
     for name, value in values.items():
         part = next((part for part in part_names(name) if part not in other_parts), None)
         if part is not None:
-            parts.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+            parts.setdefault(part, Counter()).update(_value_facts(name.removeprefix(part), value))
     return parts
 
 
-def _facts(name: str, value: YamlValue) -> list[str]:
+def _value_facts(name: str, value: YamlValue) -> list[str]:
     return [name, f"{name}={value.text}"]

@@ -18,11 +18,11 @@ _MANAGER = "Visualization Manager"
 _GLOBAL = f"{_MANAGER}.Global Options."
 _VIEW = f"{_MANAGER}.Views.Current."
 _IGNORED = frozenset({"Class", "Name", "Value", "Displays", "Links", "Frames", "Tree", "Namespaces", "Status"})
-"""The properties of displays that are shown elsewhere, or that RViz fills from the data that it received."""
+"""The properties of displays that are compared separately, or that RViz fills from received data."""
 _COMPUTED = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
 _TOPIC = "Topic"
 _MAX_PROPERTIES = 4
-"""The number of properties of a display that a line shows."""
+"""The maximum number of properties of a display in a line."""
 
 
 @dataclass(frozen=True)
@@ -148,17 +148,17 @@ def _compare_displays(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item]
     old_rest, new_rest = list(old), list(new)
     for before, after in list(_take_matches(old_rest, new_rest)):
         for text in _display_changes(before, after):
-            pair.add(text, _location(pair, after))
+            pair.add(text, _item_location(pair, after))
     for display in new_rest:
         text = phrase("display '{name}' of class '{type}' added", name=display.name, type=display.class_name)
         if display.topic:
             text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
-        pair.add(text, _location(pair, display))
+        pair.add(text, _item_location(pair, display))
     for display in old_rest:
         text = phrase("display '{name}' of class '{type}' removed", name=display.name, type=display.class_name)
         if display.topic:
             text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
-        pair.add(text, _location(pair, display, is_old=True))
+        pair.add(text, _item_location(pair, display, is_old=True))
 
 
 def _take_matches(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
@@ -204,17 +204,17 @@ def _compare_classes(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item],
     removed = [item for name, item in old_classes.items() if name not in new_classes]
     if added:
         names = quoted_names([item.class_name for item in added])
-        pair.add(phrase("{kind} added: {names}", kind=title, names=names), _location(pair, added[0]))
+        pair.add(phrase("{kind} added: {names}", kind=title, names=names), _item_location(pair, added[0]))
     if removed:
         names = quoted_names([item.class_name for item in removed])
         text = phrase("{kind} removed: {names}", kind=title, names=names)
-        pair.add(text, _location(pair, removed[0], is_old=True))
+        pair.add(text, _item_location(pair, removed[0], is_old=True))
     for name, item in new_classes.items():
         before = old_classes.get(name)
         if before is not None and before.topic != item.topic:
             text = phrase("'{name}': topic {old} -> {new}", name=name, old=before.topic or "-", new=item.topic or "-")
-            pair.add(text, _location(pair, item))
+            pair.add(text, _item_location(pair, item))
 
 
-def _location(pair: FilePair, item: _Item, *, is_old: bool = False) -> Location:
+def _item_location(pair: FilePair, item: _Item, *, is_old: bool = False) -> Location:
     return Location(pair.old_path if is_old else pair.new_path, item.line, item.column, is_old)

@@ -12,14 +12,16 @@ from linkwright.review.plugins import contents_text, plugin_parts
 from linkwright.xmltree import Element
 
 _MAX_VALUES_OF_PLUGIN = 4
-"""The number of values of each plugin or sensor that the line about an added world or model shows."""
+"""The maximum number of values of each plugin or sensor in the line about an added world or model."""
 _NAMED_BY_CHILD = "include"
-"""The tag of elements whose name is a child, or the URI if there is none."""
+"""The tag of elements that have their name, or else their URI, as a child."""
 
 
 def names_in(element: Element) -> Iterator[Phrase]:
     """Yield the models of a world, or the links and joints of a model, and all plugins and sensors."""
-    names = {tag: [_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")}
+    names = {
+        tag: [_element_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")
+    }
     models = [*names["model"], *names["include"]]
     if models:
         yield phrase("models {names}", names=joined_first(models, MAX_NAMES))
@@ -44,7 +46,12 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
         texts.append(text if count == 1 else phrase("{part} ({count} times)", part=text, count=count))
     if texts:
         yield joined_first(texts, MAX_NAMES)
-    masses = [element.text() for each in model.walk() if each.tag == "inertial" for element in each.elements("mass")]
+    masses = [
+        element.text()
+        for inertial in model.walk()
+        if inertial.tag == "inertial"
+        for element in inertial.elements("mass")
+    ]
     try:
         mass = sum(float(text) for text in masses)
     except ValueError:
@@ -53,7 +60,7 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
         yield phrase("mass {mass:.4g} kg", mass=mass)
 
 
-def _name(element: Element) -> str:
+def _element_name(element: Element) -> str:
     """Return the name of an element, or the last part of the URI of an included model without a name."""
     texts = (element.first(tag) for tag in ("name", "uri"))
     included = next((text.text().strip().rstrip("/") for text in texts if text is not None), "")

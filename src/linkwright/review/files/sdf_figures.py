@@ -36,7 +36,7 @@ def model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figur
     for name, unit, measure in _QUANTITIES:
         yield from figure_of(name, unit, *map(measure, measures))
     if scenes:
-        yield from figure_of(phrase("size"), "m", *map(_size, scenes))
+        yield from figure_of(phrase("size"), "m", *map(_scene_size, scenes))
 
 
 class _Measures:
@@ -77,15 +77,15 @@ def _mass_properties(placed: PlacedLink, inertial: Inertial) -> MassProperties:
     return own.moved(in_link).moved(pose_of(placed.pose))
 
 
-def _mass(measures: _Measures) -> float | None:
+def _total_mass(measures: _Measures) -> float | None:
     return None if measures.mass_properties is None else measures.mass_properties.mass
 
 
-def _center(measures: _Measures) -> Array | None:
+def _center_of_mass(measures: _Measures) -> Array | None:
     return None if measures.mass_properties is None else measures.mass_properties.center
 
 
-def _size(scene: Scene) -> Array | None:
+def _scene_size(scene: Scene) -> Array | None:
     """Return the lengths of the box around all visuals in m, shape (3,); None if some cannot be drawn."""
     if scene.problems or not len(scene.mesh.points):
         return None
@@ -97,7 +97,7 @@ _QUANTITIES: tuple[tuple[Phrase, str, Callable[[_Measures], object]], ...] = (
     (phrase("links"), "", lambda measures: measures.links),
     (phrase("joints"), "", lambda measures: measures.joints),
     (phrase("moving joints"), "", lambda measures: measures.moving_joints),
-    (phrase("mass"), "kg", _mass),
-    (phrase("center of mass"), "m", _center),
+    (phrase("mass"), "kg", _total_mass),
+    (phrase("center of mass"), "m", _center_of_mass),
 )
 """The quantities: their names, their units, and the functions that measure them."""

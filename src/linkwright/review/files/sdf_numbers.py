@@ -21,16 +21,16 @@ _MOMENTS = frozenset({"ixx", "iyy", "izz"})
 _ROUNDING = 1e-6
 """The maximum difference of two equal values, relative to the largest number of a value."""
 _NOTHING = 1e-15
-"""The maximum difference of equal numbers, whatever their size."""
+"""The maximum absolute difference of equal numbers."""
 _SAME_RATIO = 1e-2
-"""The maximum relative difference of the ratios of the moments of inertia of a tensor that is scaled as a whole."""
+"""The maximum relative difference of the ratios of the moments of inertia of a scaled tensor."""
 _MIN_DIGITS, _MAX_DIGITS = 4, 17
 _POSE = 6
 """The number of numbers of a pose."""
-_PARTS = slice(0, 3), slice(3, _POSE)
+_POSE_PARTS = slice(0, 3), slice(3, _POSE)
 """The position and the rotation in a pose."""
 _FEW = 2
-"""The maximum number of entries of a tensor for which both values of each are shown."""
+"""The maximum number of changed tensor entries that are shown with both values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,11 +136,11 @@ def _without_tiny_products(values: dict[str, Difference]) -> dict[str, Differenc
     return {
         name: value
         for name, value in values.items()
-        if not (name.startswith("i") and name not in _MOMENTS and _change(value) <= limit)
+        if not (name.startswith("i") and name not in _MOMENTS and _change_size(value) <= limit)
     }
 
 
-def _change(difference: Difference) -> float:
+def _change_size(difference: Difference) -> float:
     (old,), (new,) = _parse_numbers(difference.old), _parse_numbers(difference.new)
     return abs(new - old)
 
@@ -159,12 +159,12 @@ def _shorten_numbers(old: str, new: str) -> tuple[str, str]:
 
 def _pose_texts(old: str, new: str) -> Iterator[Phrase | str]:
     first, second = old.split(), new.split()
-    center, axes = ([_parse_numbers(" ".join(words[part])) for words in (first, second)] for part in _PARTS)
+    center, axes = ([_parse_numbers(" ".join(words[part])) for words in (first, second)] for part in _POSE_PARTS)
     if center[0] != center[1]:
         text = "center {} -> {} m".format(*(" ".join(f"{number:.6g}" for number in numbers) for numbers in center))
         yield phrase("{change} (moved by {distance:.4g} m)", change=text, distance=math.dist(*center))
     if axes[0] != axes[1]:
-        yield phrase("axes {old} -> {new}", old=" ".join(first[_PARTS[1]]), new=" ".join(second[_PARTS[1]]))
+        yield phrase("axes {old} -> {new}", old=" ".join(first[_POSE_PARTS[1]]), new=" ".join(second[_POSE_PARTS[1]]))
 
 
 def _tensor_texts(entries: Mapping[str, tuple[str, str]]) -> Iterator[Phrase | str]:

@@ -52,29 +52,31 @@ def compare_semantics(pair: FilePair) -> None:
 
 def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
     """Compare two semantic descriptions by their root elements."""
-    old, new = ({(entry.tag, entry.name): entry for entry in _entries(root)} for root in (old_root, new_root))
+    old, new = ({(entry.tag, entry.name): entry for entry in _read_entries(root)} for root in (old_root, new_root))
     renamed = dict(_find_renamed(old, new))
     passive = {name for tag, name in new if tag == "passive_joint"}
     for key, entry in new.items():
         if key in old:
             _compare_entries(pair, old[key], entry, passive)
         elif key not in renamed.values():
-            pair.add(phrase("{entry} added", entry=_title(entry)), pair.location(entry.element.span()))
+            pair.add(phrase("{entry} added", entry=_entry_title(entry)), pair.location(entry.element.span()))
     for key, entry in old.items():
         if key in renamed:
-            text = phrase("{entry} renamed to '{name}'", entry=_title(entry), name=new[renamed[key]].name)
+            text = phrase("{entry} renamed to '{name}'", entry=_entry_title(entry), name=new[renamed[key]].name)
             location = pair.location(new[renamed[key]].element.span())
             pair.add(text, location, removal_reason(entry.tag, entry.name))
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
-            pair.add(phrase("{entry} removed", entry=_title(entry)), location, removal_reason(entry.tag, entry.name))
+            pair.add(
+                phrase("{entry} removed", entry=_entry_title(entry)), location, removal_reason(entry.tag, entry.name)
+            )
     for tag in _PAIRS:
         _compare_pairs(pair, tag, *(_elements_by_pair(root, tag) for root in (old_root, new_root)))
 
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:
     """Return the groups, states and other named elements of a semantic description, or None if there are none."""
-    titles = [_title(entry) for entry in _entries(_read_root(version.file(path)))]
+    titles = [_entry_title(entry) for entry in _read_entries(_read_root(version.file(path)))]
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
@@ -109,7 +111,7 @@ def _read_root(file: Path) -> Element:
     return read_document(str(file)).root
 
 
-def _entries(root: Element) -> Iterator[_Entry]:
+def _read_entries(root: Element) -> Iterator[_Entry]:
     for element in root.elements():
         name = element.attributes.get("name", "")
         if element.tag not in _NAMED:
@@ -147,7 +149,7 @@ def _is_same(old: _Entry, new: _Entry) -> bool:
     return old.tag == new.tag and dict(old.values) == dict(new.values)
 
 
-def _title(entry: _Entry) -> Phrase:
+def _entry_title(entry: _Entry) -> Phrase:
     return phrase("{tag} '{name}'", tag=term(entry.tag), name=entry.name)
 
 
@@ -162,7 +164,7 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive: Collecti
         elif not _are_equal(before, after):
             changes.append(f"{name} {before} -> {after}")
     if changes:
-        text = phrase("{entry}: {changes}", entry=_title(new), changes=joined_first(changes, MAX_NAMES))
+        text = phrase("{entry}: {changes}", entry=_entry_title(new), changes=joined_first(changes, MAX_NAMES))
         pair.add(text, pair.location(new.element.span()), _lost_joints_reason(pair.versions.old, old, new, passive))
 
 

@@ -17,7 +17,7 @@ from linkwright.review.versions import Version
 SETUP_FILE = "setup.py"
 _COMPARED = frozenset({"entry_points", "data_files", "packages"})
 _SHOWN = frozenset({"name", "version", "python_requires", "license"})
-"""The arguments of ``setup`` whose values are shown if they are texts."""
+"""The arguments of ``setup`` whose string values are shown."""
 
 
 def compare_setup_files(pair: FilePair) -> None:

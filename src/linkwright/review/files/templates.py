@@ -22,7 +22,7 @@ _DECLARATION = re.compile(r"<\?xml\b[^>]*>")
 _STRING = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?P<text>[^\"'\\]*)\"")
 _ESCAPED = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
 _ROOTS = ("sdf", "gazebo")
-"""The tags of the root of a file in SDF; the second one is that of versions before SDF had its name."""
+"""The root tags of SDF files. The second tag is from versions before the name SDF."""
 
 
 def is_template(path: str) -> bool:

@@ -13,13 +13,13 @@ from linkwright.review.list_changes import change_text
 from linkwright.review.merging import common_reason, name_edit
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
-"""The path of a list, and an item of it that has no name."""
+"""The path of a list item without a name."""
 _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
-"""A value that is a name, such as that of a topic, a frame or a file."""
+"""A value that is the name of a topic, a frame or a file, for example."""
 _MIN_ALIKE = 4
-"""The number of parts beside each other that gain or lose a value of the same name, from which they are one line."""
+"""The minimum number of sibling parts that gain or lose values with the same name in one line."""
 _MAX_ITEM_CHANGES = 6
-"""The maximum number of changes of the items of a list that are all shown."""
+"""The maximum number of changed list items that are shown separately."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class ValueChange:
 
     @property
     def place(self) -> Hashable | None:
-        """A key that is equal for values with the same name that sibling parts gain or lose; None for other changes."""
+        """A key that is equal for values with the same name which sibling parts add or remove; None for others."""
         outer, *rest = self.name.rsplit(".", 2)
         if self.kind == "changed" or len(rest) < 2:
             return None

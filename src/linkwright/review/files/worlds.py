@@ -24,10 +24,10 @@ from linkwright.review.files.sdf_numbers import (
     without_same_values,
 )
 from linkwright.review.files.templates import is_same_name_possible, is_template, template_elements
-from linkwright.review.left_names import left_names
+from linkwright.review.left_names import find_left_names
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
-from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
+from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.versions import Version
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
@@ -38,7 +38,7 @@ _NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|fra
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
 _SET_VARIABLE = re.compile(r"(?:^|.* )set [\w.]+(?: \d+)?")
-"""The path of a variable that a template sets; its name does not determine how the value is used."""
+"""The path of a variable that a template sets. Its name does not show the use of the value."""
 _UNSEEN = frozenset(
     {"collision", "inertial", "plugin", "sensor", "physics", "axis", "light", "gravity", "scene", "gui", "static"}
 )
@@ -55,7 +55,7 @@ def compare_worlds(pair: FilePair) -> None:
     changed = without_same_values(ElementComparison().child_differences(*elements))
     found = list(with_inertials(without_rounding(changed)))
     added = added_topics(found)
-    differences = with_replaced_plugins(found)
+    differences = merge_replaced_plugins(found)
     changes = [_WorldChange(difference, _breaking_reason(difference, added)) for difference in differences]
     alone: list[_WorldChange] = []
     for group in _group_alike(changes):
@@ -65,7 +65,7 @@ def compare_worlds(pair: FilePair) -> None:
             continue
         locations = tuple(location for change in group[1:] if (location := change.location(pair)) is not None)
         first = group[0]
-        text = _sentence(first.difference, first.path)
+        text = _difference_sentence(first.difference, first.path)
         pair.changes.append(
             Change(text, location=first.location(pair), other_names=tuple(parts[1:]), other_locations=locations)
         )
@@ -80,13 +80,13 @@ def _find_left_names(pair: FilePair, old: Sequence[Element], new: Sequence[Eleme
 
     The name may exist in a model that only the new version includes.
     """
-    old_links, old_joints, old_models = (_names(old, tag) for tag in ("link", "joint", "include"))
-    new_links, new_joints, new_models = (_names(new, tag) for tag in ("link", "joint", "include"))
+    old_links, old_joints, old_models = (_names_of_tag(old, tag) for tag in ("link", "joint", "include"))
+    new_links, new_joints, new_models = (_names_of_tag(new, tag) for tag in ("link", "joint", "include"))
     if new_models <= old_models:
-        yield from left_names(new, old_links - new_links, old_joints - new_joints, pair.location)
+        yield from find_left_names(new, old_links - new_links, old_joints - new_joints, pair.location)
 
 
-def _names(elements: Sequence[Element], tag: str) -> set[str]:
+def _names_of_tag(elements: Sequence[Element], tag: str) -> set[str]:
     """Return the names of all elements with a tag, or the URIs of included models."""
     found = (descendant for element in elements for descendant in element.walk() if descendant.tag == tag)
     if tag == "include":
@@ -184,7 +184,7 @@ def _report_separately(pair: FilePair, changes: Sequence[_WorldChange]) -> None:
         if merged.add(change.path, id(change) if change.is_renamed else change.kind) == len(firsts):
             firsts.append(change)
     for path, change in zip(merged.paths, firsts, strict=True):
-        pair.add(_sentence(change.difference, path), change.location(pair), change.reason)
+        pair.add(_difference_sentence(change.difference, path), change.location(pair), change.reason)
 
 
 def _read_elements(file: Path) -> list[Element]:
@@ -194,7 +194,7 @@ def _read_elements(file: Path) -> list[Element]:
     return list(document.root.elements())
 
 
-def _sentence(difference: Difference, name: str) -> Phrase:
+def _difference_sentence(difference: Difference, name: str) -> Phrase:
     """Return a difference in one line.
 
     Args:

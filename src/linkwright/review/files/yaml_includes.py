@@ -14,11 +14,11 @@ from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, LimitError, UnreadableFileError
 from linkwright.review.files.yaml_values import compose_yaml, yaml_values
 
-_KEYS = ("include", "$include")
+_INCLUDE_KEYS = ("include", "$include")
 _TAG = "!include"
 _MAX_DEPTH = 5
 _MAX_INCLUDES = 200
-"""The number of includes of a file, nested ones among them, that are read."""
+"""The maximum number of includes of a file that are read, including nested includes."""
 _MAX_BYTES = 1 << 20
 
 
@@ -112,7 +112,9 @@ class _Includes:
         return None
 
     def _included_by_key(self, key: yaml.Node, value: yaml.Node) -> str | None:
-        is_include = isinstance(key, yaml.ScalarNode) and key.value in _KEYS and isinstance(value, yaml.ScalarNode)
+        is_include = (
+            isinstance(key, yaml.ScalarNode) and key.value in _INCLUDE_KEYS and isinstance(value, yaml.ScalarNode)
+        )
         return self._existing_file(str(value.value)) if is_include else None
 
     def _existing_file(self, name: str) -> str | None:
@@ -141,12 +143,12 @@ class _Includes:
 
 
 def _move_to_place(node: yaml.Node, place: yaml.Node) -> None:
-    """Set the location of a node and all its descendants to that of the include."""
+    """Set the location of a node and all its descendants to the location of the include."""
     pending = [node]
     while pending:
-        each = pending.pop()
-        each.start_mark = place.start_mark
-        if isinstance(each, yaml.MappingNode):
-            pending += [part for pair in each.value for part in pair]
-        elif isinstance(each, yaml.SequenceNode):
-            pending += each.value
+        current = pending.pop()
+        current.start_mark = place.start_mark
+        if isinstance(current, yaml.MappingNode):
+            pending += [part for pair in current.value for part in pair]
+        elif isinstance(current, yaml.SequenceNode):
+            pending += current.value

@@ -16,7 +16,7 @@ _MAX_SIMILARITIES = 2_500
 """The maximum product of the numbers of different items of two lists that are aligned by their contents."""
 _MIN_SIMILARITY = 0.4
 _MAX_DEPTH = 4
-"""The depth in an item up to which values are compared one by one."""
+"""The maximum depth in an item at which values are compared one by one."""
 
 
 def item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
@@ -65,7 +65,7 @@ def _align(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, 
     old_texts, new_texts = ([_content_text(item, texts) for item in items] for items in (old, new))
     anchors: list[tuple[int, int]] = []
     if len(old) * len(new) <= _MAX_SIMILARITIES:
-        anchors = _best_pairs(list(map(_facts, old)), list(map(_facts, new)))
+        anchors = _best_pairs(list(map(_count_values, old)), list(map(_count_values, new)))
     else:
         matcher = SequenceMatcher(None, old_texts, new_texts, autojunk=False)
         for start, new_start, size in matcher.get_matching_blocks():
@@ -87,7 +87,7 @@ def _match_similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> 
     in_order = [(number, number) for number in range(min(len(old), len(new)))]
     if len(old) * len(new) > _MAX_SIMILARITIES:
         return in_order
-    old_facts, new_facts = (list(map(_facts, items)) for items in (old, new))
+    old_facts, new_facts = (list(map(_count_values, items)) for items in (old, new))
     if len(old) == len(new) and all(set(a) & set(b) for a, b in zip(old_facts, new_facts, strict=True)):
         return in_order
     if len(old) == len(new) and not any(isinstance(item, yaml.MappingNode) for item in (*old, *new)):
@@ -98,7 +98,7 @@ def _match_similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> 
 def _best_pairs(old: Sequence[Counter[str]], new: Sequence[Counter[str]]) -> list[tuple[int, int]]:
     """Return the indexes of the most similar items in the order of both lists."""
     best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
-    scores = [[_similarity(a, b) for b in new] for a in old]
+    scores = [[_values_similarity(a, b) for b in new] for a in old]
     for i, row in enumerate(scores, 1):
         for k, similarity in enumerate(row, 1):
             together = best[i - 1][k - 1] + similarity if similarity >= _MIN_SIMILARITY else 0.0
@@ -116,12 +116,12 @@ def _best_pairs(old: Sequence[Counter[str]], new: Sequence[Counter[str]]) -> lis
     return pairs[::-1]
 
 
-def _facts(node: yaml.Node) -> Counter[str]:
+def _count_values(node: yaml.Node) -> Counter[str]:
     """Return the paths of the values in an item, each with its value."""
-    return Counter(_leaves(node, "", 0))
+    return Counter(_walk_values(node, "", 0))
 
 
-def _leaves(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
+def _walk_values(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
     children: list[tuple[str, yaml.Node]] = []
     if isinstance(node, yaml.MappingNode):
         children = [(str(key.value), value) for key, value in node.value]
@@ -131,10 +131,10 @@ def _leaves(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
         yield f"{path}={_content_text(node, {})}"
         return
     for key, value in children:
-        yield from _leaves(value, f"{path}.{key}", depth + 1)
+        yield from _walk_values(value, f"{path}.{key}", depth + 1)
 
 
-def _similarity(old: Counter[str], new: Counter[str]) -> float:
+def _values_similarity(old: Counter[str], new: Counter[str]) -> float:
     total = old.total() + new.total()
     return 2 * (old & new).total() / total if total else 1.0
 

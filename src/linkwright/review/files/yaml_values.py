@@ -91,7 +91,7 @@ def yaml_values(root: yaml.Node, labels: Mapping[int, str]) -> dict[str, YamlVal
         UnreadableFileError: the document has more values than a parameter file.
     """
     values: dict[str, YamlValue] = {}
-    for path, value in _values(root, "", labels):
+    for path, value in _walk_values(root, "", labels):
         values[path] = value
         if len(values) > _MAX_VALUES:
             raise LimitError(phrase("it has more than {count} values", count=_MAX_VALUES))
@@ -130,18 +130,18 @@ def value_of_text(text: str) -> YamlValue | None:
         return None
     if root is None or isinstance(root, yaml.MappingNode) or is_structured_list(root):
         return None
-    return next(value for _, value in _values(root, "", {}))
+    return next(value for _, value in _walk_values(root, "", {}))
 
 
-def _values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Iterator[tuple[str, YamlValue]]:
+def _walk_values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Iterator[tuple[str, YamlValue]]:
     if isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             name = key.value if isinstance(key, yaml.ScalarNode) else "?"
-            yield from _values(value, f"{path}.{name}" if path else str(name), labels)
+            yield from _walk_values(value, f"{path}.{name}" if path else str(name), labels)
     elif is_structured_list(node):
         for number, item in enumerate(node.value):
             label = name_of_item(item) or labels.get(id(item)) or number
-            yield from _values(item, f"{path}[{label}]", labels)
+            yield from _walk_values(item, f"{path}[{label}]", labels)
     else:
         mark = node.start_mark
         is_list = isinstance(node, yaml.SequenceNode)

@@ -73,7 +73,7 @@ def _default_value(values: Mapping[str, str], outline: LaunchOutline) -> tuple[s
     """Return the value with the defaults of the arguments, and whether it is known."""
     result = None
     for name, value in values.items():
-        holds = condition_holds(outline.resolved(condition_of_setting(name)))
+        holds = condition_holds(outline.resolve(condition_of_setting(name)))
         if holds is None:
             return None, False
         result = value if holds else result

@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 import re
 
-_PARTS = re.compile(r" and (?=(?:if|unless|after) )")
+_SEPARATOR = re.compile(r" and (?=(?:if|unless|after) )")
 _EVALUATION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
 _COMPARISON = re.compile(r"(?P<left>\S*) (?P<operator>==|!=) (?P<right>\S*)")
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _MAX_LENGTH = 500
 
 
@@ -19,7 +19,7 @@ def condition_holds(condition: str) -> bool | None:
         condition: conditions such as ``if true and unless $(eval 'a' == 'b')``, with values in place of variables.
             Empty if there is none.
     """
-    results = [_part_holds(part) for part in _PARTS.split(condition) if part]
+    results = [_part_holds(part) for part in _SEPARATOR.split(condition) if part]
     if False in results:
         return False
     return None if None in results else True
@@ -42,7 +42,7 @@ def _evaluate_text(text: str) -> bool | None:
         comparison = _COMPARISON.fullmatch(text)
         if comparison is not None:
             return (comparison["left"] == comparison["right"]) == (comparison["operator"] == "==")
-        return _TRUTH.get(text.lower())
+        return _BOOLEANS.get(text.lower())
     try:
         return _to_bool(_evaluate_expression(ast.parse(text, mode="eval").body))
     except (SyntaxError, ValueError, RecursionError):
@@ -65,8 +65,8 @@ def _evaluate_expression(node: ast.expr) -> object:
     """
     if isinstance(node, ast.Constant):
         return node.value
-    if isinstance(node, ast.Name) and node.id.lower() in _TRUTH:
-        return _TRUTH[node.id.lower()]
+    if isinstance(node, ast.Name) and node.id.lower() in _BOOLEANS:
+        return _BOOLEANS[node.id.lower()]
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
         return not _to_bool(_evaluate_expression(node.operand))
     if isinstance(node, ast.BoolOp):
@@ -84,7 +84,7 @@ def _to_bool(value: object) -> bool:
     Raises:
         ValueError: the value is neither true nor false.
     """
-    truth = _TRUTH.get(str(value).lower())
+    truth = _BOOLEANS.get(str(value).lower())
     if truth is None:
         raise ValueError(value)
     return truth

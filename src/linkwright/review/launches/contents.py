@@ -14,7 +14,7 @@ _KINDS = (
     "argument",
 )  # fmt: skip
 _MAX_SETTINGS = 8
-"""The number of settings of each action that the line shows."""
+"""The maximum number of settings of each action in the line."""
 
 
 def launch_contents(version: Version, path: str) -> Phrase | None:
@@ -25,7 +25,7 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
         path: the path of the file, relative to the root.
 
     Raises:
-        LinkwrightError: the file cannot be read; also as `UnreadableFileError`, `OSError` and `ValueError`.
+        LinkwrightError, UnreadableFileError, OSError, ValueError: the file cannot be read.
     """
     entries = read_outline(version.file(path), version.root).entries
     entries = [entry for entry in entries if entry.kind in _KINDS and not (entry.kind == READING and entry.settings)]

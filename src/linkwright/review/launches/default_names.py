@@ -45,7 +45,7 @@ def script_of(root: Path, program: str) -> Path | None:
         return None
     modules = _module_paths(folder, name)
     names = (name,) if name.endswith(".py") else (name, f"{name}.py")
-    scripts = modules or [file for each in names for file in sorted(folder.rglob(each)) if file.is_file()]
+    scripts = modules or [file for name in names for file in sorted(folder.rglob(name)) if file.is_file()]
     return scripts[0] if len(scripts) == 1 else None
 
 
@@ -68,5 +68,7 @@ def _module_paths(folder: Path, executable: str) -> list[Path]:
     if not setup.is_file():
         return []
     programs = read_setup(SourceText(str(setup), setup.read_text("utf-8", errors="replace"))).entry_points
-    modules = [folder / f"{each.module.replace('.', '/')}.py" for each in programs if each.executable == executable]
+    modules = [
+        folder / f"{program.module.replace('.', '/')}.py" for program in programs if program.executable == executable
+    ]
     return [module for module in modules if module.is_file()]

@@ -32,11 +32,11 @@ from linkwright.review.list_changes import list_items
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
 """Programs that offer nothing to other programs."""
 _JOINT_STATES = "joint_state_publisher"
-"""The beginning of the names of two packages that publish the same."""
+"""The common prefix of the names of two packages that publish the same topics."""
 _SPAWNING = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
-"""Programs that tell another program once to create a robot, and offer nothing themselves."""
+"""Programs that request a robot from another program and exit. They offer nothing themselves."""
 _SPAWNING_FILE = re.compile(r"spawn|create")
 """The names of included files and commands that create robots."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
@@ -45,15 +45,15 @@ _NAMES_OF_NODES = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remap
 _NAME_ARGUMENT = re.compile(
     r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
 )
-"""The arguments whose values are, by their names, names that other programs use."""
+"""The arguments whose values, judging by the argument name, are names that other programs use."""
 _MIN_SIMILARITY_OF_NAMES = 0.75
 _NAMES_OF_PROGRAMS = {
     "robot_localization/ekf_node": "ekf_filter_node",
     "robot_localization/ukf_node": "ukf_filter_node",
 }
-"""The names of nodes that are not given one, where the programs have other names."""
-_TRUTH = ("true", "false")
-_CODE = re.compile(r"\w\(")
+"""The default names of nodes that differ from the name of the program."""
+_BOOLEANS = ("true", "false")
+_CALL = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
 _EXPRESSION = "$(eval "
 """The beginning of an expression, whose value is unknown."""
@@ -63,7 +63,7 @@ _PUBLISHED_TOPIC = re.compile(
     r"[ ._](\w+_)?(pub|publish|published|publisher|out|output)_(\w+_)?topic(_name)?$|"
     r"[ ._](\w+_)?topic(_name)?_(pub|publish|publisher|out|output)$"
 )
-"""The parameters whose names say that they are the name of a topic that the node publishes."""
+"""The parameters that, judging by their name, contain the name of a published topic."""
 _TOPIC = re.compile(r"[~/\w]+")
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
@@ -71,7 +71,7 @@ _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
 _Use = tuple[Entry, str, Phrase]
-"""An action, its setting that uses an argument, and why a new default of the argument is breaking for it."""
+"""An action, its setting that uses an argument, and the reason why a new default of the argument is breaking."""
 _ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
@@ -193,8 +193,8 @@ def setting_reason(
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return _renaming_reason(old, new, old_outline, new_outline)
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
-        held = condition_holds(old_outline.resolved(old or ""))
-        does_not_hold = condition_holds(new_outline.resolved(new or "")) is False
+        held = condition_holds(old_outline.resolve(old or ""))
+        does_not_hold = condition_holds(new_outline.resolve(new or "")) is False
         return phrase("by default, it does not start any more") if held and does_not_hold else None
     if entry.kind != "node" or offers_nothing(entry):
         return None
@@ -203,7 +203,7 @@ def setting_reason(
         side = side_of(loaded_class(entry) or entry.name, source, new_outline.root)
         if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
-        if old is not None and old_outline.resolved(old) in _remapping_targets(entry, new_outline):
+        if old is not None and old_outline.resolve(old) in _remapping_targets(entry, new_outline):
             return None  # another topic of the node has the name now
         return _remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
     if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
@@ -227,14 +227,14 @@ def _parameter_reason(
 ) -> Phrase | None:
     """Return the reason why a changed parameter is breaking: it names a shared frame or topic, or its type differs."""
     if setting == _FRAME_PREFIX:
-        old_prefix, new_prefix = old_outline.resolved(old or ""), new_outline.resolved(new or "")
-        is_unknown = any(_CODE.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
+        old_prefix, new_prefix = old_outline.resolve(old or ""), new_outline.resolve(new or "")
+        is_unknown = any(_CALL.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
         if old_prefix == new_prefix or is_unknown:
             return None
         return phrase("programs that look up the frames by their old names do not find them")
     if old is None or new is None or not setting.startswith(PARAMETER):
         return None
-    old_name, new_name = old_outline.resolved(old), new_outline.resolved(new)
+    old_name, new_name = old_outline.resolve(old), new_outline.resolve(new)
     is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
     is_topic = _PUBLISHED_TOPIC.search(setting) is not None and _TOPIC.fullmatch(old_name) is not None
     if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
@@ -275,7 +275,7 @@ def _default_reason(
     argument: Entry, old: str, new: str, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
     """Return the reason why another default is breaking: a node does not start, or a shared name changes."""
-    old_value, new_value = old_outline.resolved(old), new_outline.resolved(new)
+    old_value, new_value = old_outline.resolve(old), new_outline.resolve(new)
     if old_value == new_value:
         return None
     for short, long in ((old, new), (new, old)):
@@ -283,7 +283,11 @@ def _default_reason(
             if short is old:
                 return phrase("callers that pass the name of a file instead of its path fail")
             return phrase("callers that pass the path of a file instead of its name fail")
-    if old_value.lower() in _TRUTH and re.fullmatch(r"[a-z]\w*", new_value.lower()) and new_value.lower() not in _TRUTH:
+    if (
+        old_value.lower() in _BOOLEANS
+        and re.fullmatch(r"[a-z]\w*", new_value.lower())
+        and new_value.lower() not in _BOOLEANS
+    ):
         return phrase("callers that pass '{value}' fail", value=old_value)
     uses = list(_reasons_of_uses(argument.name, old_outline, new_outline))
     stopped = list(
@@ -305,7 +309,7 @@ def _sort_by_importance(uses: list[_Use]) -> list[_Use]:
 
 
 def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[_Use]:
-    """Yield the settings that use an argument and for which its new default is breaking."""
+    """Yield the uses of an argument in settings for which its new default is breaking."""
     variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in new_outline.entries:
         if entry.kind == "argument":
@@ -318,7 +322,7 @@ def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchO
 
 
 def _resolve_condition(entry: Entry, outline: LaunchOutline) -> str:
-    return outline.resolved(entry.settings.get(CONDITION, ""))
+    return outline.resolve(entry.settings.get(CONDITION, ""))
 
 
 def _served_names(entry: Entry, outline: LaunchOutline) -> list[str]:
@@ -327,7 +331,7 @@ def _served_names(entry: Entry, outline: LaunchOutline) -> list[str]:
 
 def _names_in_arguments(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
     """Return the controllers or the frame in the arguments of a node, with the defaults of arguments."""
-    return served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolved(arguments or "")}, entry.span))
+    return served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolve(arguments or "")}, entry.span))
 
 
 def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase | None:
@@ -375,7 +379,7 @@ def _is_name_of_program(entry: Entry, name: str) -> bool:
 
 def _resolve_name(text: str | None, outline: LaunchOutline) -> str:
     """Return a name with the defaults of the arguments; empty for None."""
-    resolved = outline.resolved(text or "").strip("/")
+    resolved = outline.resolve(text or "").strip("/")
     return _NEVER.sub("", resolved).strip("/")
 
 
@@ -398,11 +402,11 @@ def _remapping_reason(
         new_outline: the new file.
         is_known: whether the node certainly publishes or serves the name.
     """
-    old_name = old_outline.resolved(source if old is None else old)
-    new_name = new_outline.resolved(source if new is None else new)
+    old_name = old_outline.resolve(source if old is None else old)
+    new_name = new_outline.resolve(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
-    if _CODE.search(new_name) or _has_new_variable(old_name, new_name):
+    if _CALL.search(new_name) or _has_new_variable(old_name, new_name):
         return None  # the name may be the same
     return name_reason(old_name) if is_known else possible_name_reason(old_name)
 
@@ -415,7 +419,7 @@ def _has_new_variable(old: str, new: str) -> bool:
 def _remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
     """Return the names to which an action remaps others."""
     settings = entry.settings.items()
-    return {outline.resolved(value) for name, value in settings if name.startswith(REMAPPING)}
+    return {outline.resolve(value) for name, value in settings if name.startswith(REMAPPING)}
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:

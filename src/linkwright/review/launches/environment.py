@@ -11,7 +11,7 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import READING, Entry
 from linkwright.review.launches.text import ExpressionTexts
 
-_READERS = re.compile(r"(os\.)?(environ\.get|getenv)")
+_READING_FUNCTIONS = re.compile(r"(os\.)?(environ\.get|getenv)")
 _ENVIRON = ("os.environ", "environ")
 _SUBSTITUTION = re.compile(r"\$\((?P<kind>env|optenv) (?P<name>\w+)(?P<default> [^()]*)?\)")
 _NAME = re.compile(r"\w+")
@@ -46,7 +46,7 @@ def _read_names(node: ast.expr) -> Iterator[tuple[ast.expr, bool]]:
         yield node.slice, False
     elif isinstance(node, ast.Call) and node.args:
         name = called_name(node)
-        if _READERS.fullmatch(name):
+        if _READING_FUNCTIONS.fullmatch(name):
             yield node.args[0], True
         elif name.rpartition(".")[2] == "EnvironmentVariable":
             yield node.args[0], len(node.args) + len(node.keywords) > 1

@@ -37,15 +37,15 @@ class FileChoices:
         removed, added = old_files - new_files, new_files - old_files
         for before in sorted(removed):
             for after in sorted(added):
-                is_same = self._old.resolved(before) == self._new.resolved(after)
+                is_same = self._old.resolve(before) == self._new.resolve(after)
                 is_lone = len(removed) == 1 and (not _argument_names(before) or len(added) == 1)
                 if is_same or is_lone or _last_part(before) == _last_part(after):
                     self._compare_files(before, after, new)
 
     def _compare_files(self, before: str, after: str, entry: Entry) -> None:
-        arguments = {each.name for each in self._new.entries if each.kind == "argument"}
+        arguments = {argument.name for argument in self._new.entries if argument.kind == "argument"}
         lost = (_argument_names(before) - _argument_names(after)) & arguments
-        old_file, new_file = self._old.resolved(before), self._new.resolved(after)
+        old_file, new_file = self._old.resolve(before), self._new.resolve(after)
         is_known = not _VARIABLE.search(old_file + new_file)
         if lost:
             names = quoted_names(sorted(lost))
@@ -87,7 +87,7 @@ def _file_paths(entry: Entry, outline: LaunchOutline) -> Iterator[str]:
     names = (entry.name,) if entry.kind in ("include", "parameters", "process") else ()
     for text in (*names, *entry.settings.values()):
         for word in _split_words(text):
-            path = outline.resolved(word)
+            path = outline.resolve(word)
             if "/" in path and (_FOLDER.match(path) or _FILE.search(path)):
                 yield word
 

@@ -23,12 +23,12 @@ from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import added_entry_text, join_titles, removed_entry_text, title
 from linkwright.review.launches.transforms import other_publisher
 from linkwright.review.launches.unused_arguments import report_unused_arguments
-from linkwright.review.list_changes import excerpts, shortened
+from linkwright.review.list_changes import differing_excerpts, shorten
 
 _MAX_SOURCE = 120
-"""The number of characters of a statement that are shown."""
+"""The maximum number of characters of a statement that are shown."""
 _MAX_STATEMENTS = 3
-"""The maximum number of changed statements that are each shown."""
+"""The maximum number of changed statements that are shown separately."""
 _VARIABLE = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
 """The names of variables and parameters in the texts of statements."""
 
@@ -99,8 +99,8 @@ def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outline
         return
     old, new = outlines
     text = phrase("{entry} renamed to '{name}'", entry=title(old_entry), name=new_entry.name)
-    name = old.resolved(old_entry.name)
-    names = {new.resolved(entry.name).strip("/") for entry in new.entries if entry.kind == SERVER_PARAMETER}
+    name = old.resolve(old_entry.name)
+    names = {new.resolve(entry.name).strip("/") for entry in new.entries if entry.kind == SERVER_PARAMETER}
     pair.add(text, location, None if name.strip("/") in names else name_reason(name))
 
 
@@ -111,9 +111,9 @@ def _report_lone_entries(
     included: tuple[IncludedActions, IncludedActions],
     old_names: Mapping[str, str],
 ) -> None:
-    """Report the actions that only one version has, and those that moved into or out of another file."""
+    """Report the added, removed and moved actions."""
     old_included, new_included = included
-    stopped = old_included.all_started() - new_included.all_started()
+    stopped = old_included.all_started_programs() - new_included.all_started_programs()
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in added:
         file = old_included.lone_file(entry, new_included)
@@ -142,7 +142,7 @@ def _report_lone_entries(
                 phrase("{change}; {entry} may publish its transform", change=text, entry=title(publisher)), location
             )
             continue
-        stops_nodes = entry.kind == "include" and bool(old_included.started(entry) & stopped)
+        stops_nodes = entry.kind == "include" and bool(old_included.started_programs(entry) & stopped)
         pair.add(
             text, location, removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes)
         )
@@ -158,8 +158,8 @@ def _undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline
     """Return the arguments that only the new version uses undeclared, each with an action that uses it."""
     if not is_launch_file_name(pair.new_path):
         return {}
-    old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared()
-    new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared()
+    old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared_arguments()
+    new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared_arguments()
     names = {name: entry for name, entry in new_names.items() if name not in old_names}
     return {name: entry for name, entry in names.items() if not _is_declared_by_caller(pair, name)}
 
@@ -200,7 +200,7 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
         location = pair.location(removed[0].span, is_old=True)
     if 1 <= len(removed) == len(added) <= _MAX_STATEMENTS and all(map(_are_versions, removed, added)):
         for old_part, new_part in zip(removed, added, strict=True):
-            before, after = excerpts(old_part.source, new_part.source)
+            before, after = differing_excerpts(old_part.source, new_part.source)
             pair.add(phrase("other code: {old} -> {new}", old=before, new=after), pair.location(new_part.span))
     else:
         pair.add(_code_text(removed, added), location)
@@ -214,7 +214,7 @@ def _report_failures(pair: FilePair, removed: Sequence[CodePart], added: Sequenc
         condition = part.failing_condition
         if condition and condition not in known:
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
-            text = phrase("added: {code}", code=shortened(part.source, _MAX_SOURCE))
+            text = phrase("added: {code}", code=shorten(part.source, _MAX_SOURCE))
             pair.add(text, pair.location(part.span), reason)
             others = [other for other in others if other is not part and other.source != f"if {condition}: ..."]
     return others
@@ -223,7 +223,7 @@ def _report_failures(pair: FilePair, removed: Sequence[CodePart], added: Sequenc
 def _code_text(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase:
     """Return the sentence about changed statements, which quotes the first one."""
     parts = added or removed
-    code = shortened(parts[0].source, _MAX_SOURCE)
+    code = shorten(parts[0].source, _MAX_SOURCE)
     if removed and added:
         return phrase("other code changed, such as {code}", code=code)
     text = phrase("other code added: {code}", code=code) if added else phrase("other code removed: {code}", code=code)

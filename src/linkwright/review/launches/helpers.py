@@ -14,12 +14,12 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.names import LaunchPythonFile
 
 _MAX_DEPTH = 5
-"""The number of files through which a name may be imported."""
+"""The maximum number of files through which a name may be imported."""
 _MAX_BYTES = 1 << 20
 _MAX_PASSES = 5000
-"""The number of passes of loops in a launch file that are read one by one."""
+"""The maximum number of loop passes in a launch file that are read one by one."""
 _LAUNCH = re.compile(r"launch(_\w+)?(\.|$)")
-"""The modules whose actions are known, or are the rest of a file."""
+"""The modules whose functions are known actions, or are compared as code."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class HelperFunctions:
         return True
 
     def local_names(self, python: PythonFile) -> frozenset[str]:
-        """Return the names of the functions of a file that make actions and that its other code calls."""
+        """Return the names of the functions of a file that make actions and are called by its other code."""
         names = self._local_names.get(id(python))
         if names is None:
             called = {called_name(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call)}

@@ -1,4 +1,4 @@
-"""Find out which literals that functions and loops receive appear in the actions of a launch file."""
+"""Find the literals passed to functions and loops that appear in the actions of a launch file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.review.launches.outlines import Entry
 _MAX_DEPTH = 20
 _VIEWS = ("items", "keys", "values")
 """The methods of dictionaries whose results loops use."""
-_TEXTS = (ast.Constant, ast.JoinedStr, ast.BinOp, ast.UnaryOp)
+_LITERAL_NODES = (ast.Constant, ast.JoinedStr, ast.BinOp, ast.UnaryOp)
 
 
 class Literals:
@@ -138,7 +138,7 @@ def _find_container(python: PythonFile, node: ast.expr) -> ast.expr | None:
 
 def _is_literal(python: PythonFile, node: ast.expr) -> bool:
     value = python.resolved(node)
-    return isinstance(value, _TEXTS) and not (isinstance(value, ast.Constant) and value.value is None)
+    return isinstance(value, _LITERAL_NODES) and not (isinstance(value, ast.Constant) and value.value is None)
 
 
 def _mark_text(key: int) -> str:

@@ -73,7 +73,7 @@ def read_markup_outline(root: LaunchTag) -> LaunchOutline:
     entries = list(_read_entries(root, Scope(), rest))
     is_ros1 = any(map(_is_ros1, _walk_tags(root)))
     if is_ros1:
-        entries = [replace(each, kind=SERVER_PARAMETER) if each.kind == "parameter" else each for each in entries]
+        entries = [replace(entry, kind=SERVER_PARAMETER) if entry.kind == "parameter" else entry for entry in entries]
     return LaunchOutline([*entries, *markup_readings(_attribute_values(root))], rest, is_ros1=is_ros1)
 
 
@@ -173,9 +173,9 @@ def _read_entries(parent: LaunchTag, scope: Scope, rest: list[CodePart]) -> Iter
         if tag.name in _PUSHES:
             namespace = attributes.get("namespace") or attributes.get("ns") or attributes.get("name", "")
             condition = _condition_text(tag)
-            scope = scope.pushed(f"{namespace} ({condition})" if condition else namespace)
+            scope = scope.with_namespace(f"{namespace} ({condition})" if condition else namespace)
         elif tag.name == "group":
-            inner = scope.under(_condition_text(tag)).pushed(attributes.get("ns", ""))
+            inner = scope.inside(_condition_text(tag)).with_namespace(attributes.get("ns", ""))
             yield from _read_entries(tag, inner, rest)
         else:
             entries = list(_read_action(tag))
@@ -184,14 +184,14 @@ def _read_entries(parent: LaunchTag, scope: Scope, rest: list[CodePart]) -> Iter
             if entries:
                 if entries[0].kind == "node":
                     inner_tags = [child for child in tag.children if child.name in _NODE_TAGS]
-                    inner = scope.under(_condition_text(tag))
+                    inner = scope.inside(_condition_text(tag))
                     yield from _read_entries(LaunchTag("", {}, tag.span, children=inner_tags), inner, rest)
             else:
                 text = " ".join(
                     [tag.name, *(f"{name}={value}" for name, value in sorted(attributes.items())), tag.text]
                 )
                 rest.append(CodePart(text, text, tag.span))
-                yield from _read_entries(tag, scope.under(_condition_text(tag)), rest)
+                yield from _read_entries(tag, scope.inside(_condition_text(tag)), rest)
 
 
 def _condition_text(tag: LaunchTag) -> str:

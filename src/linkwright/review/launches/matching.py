@@ -17,13 +17,13 @@ _SEPARATORS = re.compile(r"[\W_]+|node")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _PACKAGE = re.compile(r"\$\(find(?:-pkg-share)? [^()]+\)/")
 _PLACE = frozenset({CONDITION, NAMESPACE_OF_INCLUDED})
-"""The settings of an include that are not arguments that it passes."""
+"""The settings of an include that are not passed arguments."""
 _MIN_PASSED = 2
 _MIN_SHARE_OF_PASSED = 0.5
 """The number and the share of passed arguments that an include keeps if another file replaces the included one."""
 _NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
-"""The old and the new action; None for the version that does not have it."""
+"""The old and the new action; None for a version that lacks the action."""
 
 
 def match_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Match]:

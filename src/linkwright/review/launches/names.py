@@ -31,7 +31,7 @@ class _Binding:
 
 
 class LaunchPythonFile(PythonFile):
-    """A Python launch file. The value of a name is that of the last assignment before it in its function."""
+    """A Python launch file. A name has the value of the last assignment before it in its function."""
 
     def resolved(self, node: ast.expr) -> ast.expr:
         """Return the expression that is assigned to a name, and any other expression unchanged."""
@@ -47,9 +47,9 @@ class LaunchPythonFile(PythonFile):
     def _last_value(self, node: ast.Name) -> ast.expr | None:
         """Return the last value of a name before a line, or None if it is not certain."""
         for start, end, bindings in self._functions:
-            before = [each for each in bindings.get(node.id, ()) if each.line < node.lineno]
+            before = [binding for binding in bindings.get(node.id, ()) if binding.line < node.lineno]
             if start <= node.lineno <= end and node.id in bindings:
-                latest = max(before, key=lambda each: each.line) if before else None
+                latest = max(before, key=lambda binding: binding.line) if before else None
                 is_certain = latest is not None and latest.block[0] <= node.lineno <= latest.block[1]
                 return latest.value if latest is not None and is_certain else None
         return None

@@ -14,7 +14,7 @@ from linkwright.review.launches.conditions import condition_holds
 CONDITION = "condition"
 NAMESPACE = "namespace"
 NAMESPACE_OF_INCLUDED = "namespace of its nodes"
-"""The setting of an include that is not one of the arguments that it passes."""
+"""The setting of an include that is not a passed argument."""
 REMAPPING = "remapping "
 ENVIRONMENT = "environment variable "
 READING = "reading"
@@ -30,7 +30,7 @@ _CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 _PUSH = "\n"
 """The separator of pushed namespaces, which are joined when the defaults of arguments are known."""
 _MAX_DEPTH = 5
-"""The number of variables whose values may contain variables."""
+"""The maximum depth of variables in the values of variables."""
 _MAX_LENGTH = 10_000
 
 
@@ -121,7 +121,7 @@ class LaunchOutline:
     is_ros1: bool = False
     root: Path | None = None
 
-    def resolved(self, text: str) -> str:
+    def resolve(self, text: str) -> str:
         """Return a text with the defaults of arguments and environment variables in place of ``$(var NAME)``."""
         for _ in range(_MAX_DEPTH):
             resolved = _ENVIRONMENT.sub(lambda match: match["default"] or "", _VARIABLE.sub(self._value, text))
@@ -148,7 +148,7 @@ class LaunchOutline:
     def values(self) -> dict[str, str]:
         """The defaults and values of arguments and variables by name, if each is unique.
 
-        A name that several actions set under conditions has the value of the only one whose condition can hold.
+        If several conditional actions set a name, it has the value of the only action whose condition can hold.
         """
         values: dict[str, list[Entry]] = {}
         for entry in self.entries:
@@ -172,7 +172,7 @@ def _only_value(entries: Sequence[Entry]) -> str | None:
 
 
 def _condition_holds(entry: Entry, outline: LaunchOutline) -> bool | None:
-    return condition_holds(outline.resolved(entry.settings.get(CONDITION, "")))
+    return condition_holds(outline.resolve(entry.settings.get(CONDITION, "")))
 
 
 @dataclass(frozen=True)
@@ -192,16 +192,16 @@ class Scope:
         """The number of settings."""
         return len(self.conditions) + len(self.namespaces)
 
-    def under(self, condition: str) -> Scope:
+    def inside(self, condition: str) -> Scope:
         """Return the scope inside an action with a condition. The condition may be empty."""
         return Scope((*self.conditions, condition), self.namespaces) if condition else self
 
-    def pushed(self, namespace: str) -> Scope:
+    def with_namespace(self, namespace: str) -> Scope:
         """Return the scope after a namespace is pushed."""
         return Scope(self.conditions, (*self.namespaces, namespace)) if namespace else self
 
     def settings(self, kind: str, own: Mapping[str, str]) -> dict[str, str]:
-        """Return the settings of an action with those of its scope."""
+        """Return the settings of an action with the settings of its scope."""
         settings = dict(own)
         conditions = [*self.conditions, *filter(None, [own.get(CONDITION)])]
         settings.pop(CONDITION, None)
@@ -228,5 +228,5 @@ def _join_namespace(setting: str, text: str, outline: LaunchOutline) -> str:
         return text
     joined = ""
     for name in text.split(_PUSH):
-        joined = name if not joined or outline.resolved(name).startswith("/") else f"{joined}/{name}"
+        joined = name if not joined or outline.resolve(name).startswith("/") else f"{joined}/{name}"
     return joined

@@ -36,11 +36,11 @@ _ADDITIONS = ("add_action", "add_entity")
 _LIST_METHODS = ("append", "extend", "insert")
 _OUTSIDE = Scope()
 _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
-"""The arguments of actions that contain other actions, which are entries themselves."""
+"""The arguments that contain other actions. These actions have their own entries."""
 _ALIASES = {"node_executable": "executable", "node_name": "name", "node_namespace": "namespace"}
 """The names of arguments of nodes before ROS 2 Foxy."""
 _NOT_COMPARED = frozenset({"package", "executable", "plugin", "description", "cmd"})
-"""The arguments that name an action, and those that do not change what other programs see."""
+"""The arguments that name an action or are invisible to other programs."""
 _MAX_HELPER_DEPTH = 3
 _Place = tuple[int, tuple[int, ...]]
 """The identity of a call, and the numbers of the passes of the loops around it."""
@@ -148,7 +148,7 @@ class _Reader:
             return  # the object of a method, whose value is not in the scope of the call
         elif isinstance(node, (ast.List, ast.Tuple)):
             for item in node.elts:
-                scope = scope.pushed(self._pushed_namespace(item))
+                scope = scope.with_namespace(self._pushed_namespace(item))
                 self.visit(item, scope)
         elif isinstance(node, ast.For):
             self._visit_loop(node.target, node.iter, node.body, scope)
@@ -166,7 +166,7 @@ class _Reader:
     def _visit_value(self, value: ast.expr, scope: Scope) -> None:
         """Find the actions in the value of a name. The name may be assigned outside of the loops that use it."""
         texts, loops = self.texts, self._loops
-        outside = next((each for each in self._outside if not each[0] <= value.lineno <= each[1]), None)
+        outside = next((outer for outer in self._outside if not outer[0] <= value.lineno <= outer[1]), None)
         if outside is not None:
             _, _, self.texts, self._loops = outside
         self.visit(value, scope)
@@ -198,16 +198,16 @@ class _Reader:
         source = " ".join(ast.unparse(node.test).split())
         conditions = [f"{word} `{source}`" for word in ("if", "unless")]
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
-            inner = scope.under(condition)
+            inner = scope.inside(condition)
             for statement in body:
-                inner = inner.pushed(self._pushed_namespace(_added_action(statement)))
+                inner = inner.with_namespace(self._pushed_namespace(_added_action(statement)))
                 self.visit(statement, inner)
         if any(condition in inner.conditions for _, inner, _ in self.scopes.values() for condition in conditions):
             self.branches.add(id(node))
 
     def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
         for statement in function.body:
-            scope = scope.pushed(self._pushed_namespace(_added_action(statement)))
+            scope = scope.with_namespace(self._pushed_namespace(_added_action(statement)))
             self.visit(statement, scope)
 
     def visit_function(self, function: ast.FunctionDef) -> None:
@@ -222,10 +222,10 @@ class _Reader:
         if function in ACTIONS or function == _HANDLER or self._is_helper(call):
             self._add(call, scope)
         condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
-        inner = scope.under(self.texts.condition(condition))
+        inner = scope.inside(self.texts.condition(condition))
         if function == "TimerAction":
             period = next((keyword.value for keyword in call.keywords if keyword.arg == "period"), None)
-            inner = inner.under(f"after {self.texts.text(period)} s")
+            inner = inner.inside(f"after {self.texts.text(period)} s")
         if function in _LISTS or function in _ADDITIONS:
             for action in self._foreign_actions(call):
                 self._add(action, inner)
@@ -330,7 +330,11 @@ class _Reader:
 
     def _read_action(self, call: ast.Call, function: str, scope: Scope) -> Entry:
         text = self.texts.text
-        keywords = {_ALIASES.get(each.arg, each.arg): each.value for each in call.keywords if each.arg is not None}
+        keywords = {
+            _ALIASES.get(keyword.arg, keyword.arg): keyword.value
+            for keyword in call.keywords
+            if keyword.arg is not None
+        }
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
         first = call.args[0] if call.args else next(iter(call.keywords), None)
         first_text = text(first.value if isinstance(first, ast.keyword) else first)
@@ -460,7 +464,7 @@ def _split_parameters(value: BoundExpression) -> dict[str, str]:
     others: list[BoundExpression] = []
     for part in value.texts.list_parts(value.node):
         is_mapping = isinstance(part.node, (ast.Dict, ast.Call))
-        pairs = part.texts.pairs(part.node, of_parameters=True) if is_mapping else None
+        pairs = part.texts.pairs(part.node, are_parameters=True) if is_mapping else None
         if pairs is None:
             others.append(part)
         else:

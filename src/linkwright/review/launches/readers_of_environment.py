@@ -1,4 +1,4 @@
-"""Find the other files that still read an environment variable that a launch file no longer reads."""
+"""Find files that still read an environment variable after a launch file stopped reading it."""
 
 from __future__ import annotations
 

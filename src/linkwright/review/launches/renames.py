@@ -12,7 +12,7 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline
 
 _KINDS = ("argument", "variable")
 _MIN_USES = 0.5
-"""The share of the uses of a name that must be uses of the new name."""
+"""The minimum share of the uses of a name that must be uses of the new name."""
 _MIN_SIMILARITY = 0.6
 _MIN_LIKENESS_OF_USES = 0.8
 _Use = tuple[str, str]

@@ -13,20 +13,20 @@ from linkwright.review.launches.text import shorten_text
 _TRANSPARENT = frozenset(
     {"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes", "TimerAction"}
 )
-"""The calls that only put actions together."""
+"""The calls that only combine actions."""
 _ADDITIONS = ("append", "extend")
-"""The methods that put actions into lists."""
+"""The methods that add actions to lists."""
 _CONTENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
 _EXITS = ("sys.exit", "exit", "quit", "os._exit")
 """The calls that end the process."""
 _BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
-"""The fields of statements with other statements."""
+"""The fields of statements that contain nested statements."""
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
 
 
 def definitions_of(python: PythonFile) -> list[CodePart]:
-    """Return the statements that assign a name that is assigned only once."""
+    """Return the statements that assign a name for the only time."""
     rest = _Rest(python, ())
     return [
         CodePart("", _unparse(node), python.span(node))

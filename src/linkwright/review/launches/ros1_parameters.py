@@ -14,7 +14,7 @@ _DEFAULT_COMMAND = "load"
 _NULL = "null"
 _NULL_TEXTS = ("", "~", _NULL)
 WRITTEN_TEXT = "YAML text"
-"""The name of parameters whose text is not YAML before substitution."""
+"""The name for parameters whose text is not YAML before substitution."""
 
 
 def deletes_parameters(attributes: Mapping[str, str]) -> bool:

@@ -19,7 +19,7 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.list_changes import list_items
 from linkwright.review.sources.python2 import as_python3
-from linkwright.review.sources.reading import readable_source
+from linkwright.review.sources.reading import try_read_source
 from linkwright.review.versions import Version, Versions
 
 _LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
@@ -129,7 +129,7 @@ def _passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bo
     """Return the options that an action passes to its program, and whether the list is complete."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
-    words = [part for word in words for part in outline.resolved(word).split()]
+    words = [part for word in words for part in outline.resolve(word).split()]
     are_known = not any("$(" in word or "(" in word for word in words) and not text.startswith("[[")
     if _END in words:
         words = words[: words.index(_END)]
@@ -139,7 +139,7 @@ def _passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bo
 
 def _read_options(script: Path) -> _Options | None:
     """Return the options of a script, or None if it has no option parser or accepts unknown options."""
-    source = readable_source(script)
+    source = try_read_source(script)
     if source is None or _PARSER not in source.text or any(name in source.text for name in _OPEN_PARSERS):
         return None
     try:

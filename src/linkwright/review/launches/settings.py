@@ -25,14 +25,14 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.launches.renames import rename_in_text
 from linkwright.review.launches.titles import distinct_title, join_texts, join_titles, title
-from linkwright.review.list_changes import change_text, shortened
+from linkwright.review.list_changes import change_text, shorten
 from linkwright.review.merging import name_edit
 
 _MIN_GROUP = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
 _MAX_VALUE = 60
 _PASSED = "passed"
-"""The group of the arguments that an action passes to the file that it includes."""
+"""The group of arguments that an action passes to an included file."""
 
 
 @dataclass(frozen=True)
@@ -116,16 +116,16 @@ class SettingChanges:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
             self._add(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
         settings = []
-        for each in changed_settings(old, new, self._old, self._new):
-            if self._is_same_name(new, each.name, each.old, each.new):
+        for pair in changed_settings(old, new, self._old, self._new):
+            if self._is_same_name(new, pair.name, pair.old, pair.new):
                 continue
-            defaults = each.old_default, each.new_default
-            is_other = each.has_defaults and defaults[0] != defaults[1]
-            reason = self._reason(new, each.name, *defaults) if is_other else None
+            defaults = pair.old_default, pair.new_default
+            is_other = pair.has_defaults and defaults[0] != defaults[1]
+            reason = self._reason(new, pair.name, *defaults) if is_other else None
             if new.kind == READING and reason is None:
                 continue
-            old_text = None if each.old is None else rename_in_text(each.old, self._old_names)
-            setting = _Setting(each.name, old_text, each.new, reason)
+            old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
+            setting = _Setting(pair.name, old_text, pair.new, reason)
             if setting.edit is None:
                 settings.append(setting)
             else:
@@ -140,10 +140,10 @@ class SettingChanges:
         reason = setting_reason(entry, setting, old, new, self._old, self._new)
         if entry.kind == "include":
             if setting == CONDITION:
-                return reason if self._included.started(entry) else None
+                return reason if self._included.started_programs(entry) else None
             return reason or self._reason_of_passed(entry, setting, old)
         if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
-            lost = self._included.all_started({entry.name: old}) - self._included.all_started()
+            lost = self._included.all_started_programs({entry.name: old}) - self._included.all_started_programs()
             return _stopped_reason(lost) if lost else None
         return reason
 
@@ -151,7 +151,7 @@ class SettingChanges:
         """Return the reason why another value for an argument of an included file is breaking, or None if it is not."""
         others = {name: value for name, value in include.settings.items() if name != setting}
         before = replace(include, settings=others if old is None else {**others, setting: old})
-        lost = self._included.started(before) - self._included.started(include)
+        lost = self._included.started_programs(before) - self._included.started_programs(include)
         return _stopped_reason(lost) if lost else None
 
     def _is_same_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:
@@ -198,7 +198,7 @@ class SettingChanges:
         A change of the name itself already shows it.
         """
         alike = [other for other in self._new.entries if other.kind == "node" and title(other) == title(entry)]
-        if entry.kind != "node" or all(any(other is each for each in changed) for other in alike):
+        if entry.kind != "node" or all(any(other is changed_entry for changed_entry in changed) for other in alike):
             return distinct_title(entry, self._new.entries)
         name = "/".join(filter(None, (entry.settings.get(NAMESPACE), entry.settings.get("name"))))
         is_shown = not name or f" {name}" in change
@@ -257,7 +257,7 @@ def _group_text(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
 
 
 def _setting_text(setting: _Setting) -> str:
-    value = shortened(setting.new or setting.old or "''", _MAX_VALUE)
+    value = shorten(setting.new or setting.old or "''", _MAX_VALUE)
     if setting.name.startswith(REMAPPING):
         return f"{setting.name.removeprefix(REMAPPING)} -> {value}"
     return f"{setting.name.removeprefix(PARAMETER)} {value}"

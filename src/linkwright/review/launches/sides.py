@@ -19,7 +19,7 @@ _INPUTS = re.compile(
     r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
     r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
 )
-"""The topics to which those programs subscribe. They publish others."""
+"""The topics to which these programs subscribe. They publish their other topics."""
 _NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
 _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
 _OFFERING = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})

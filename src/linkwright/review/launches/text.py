@@ -18,9 +18,9 @@ _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals
 _COMPARING = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
-"""A command whose program is searched explicitly. The search is left out of the text, as commands always do it."""
+"""A command with an explicit search for the program. The text omits the search, which is the default."""
 _QUOTED = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
-"""An expression that is only a text in quotes."""
+"""An expression that is only a quoted text."""
 _OTHER_TYPES = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
@@ -163,14 +163,14 @@ class ExpressionTexts:
         is_string = isinstance(node, ast.Constant) and isinstance(node.value, str)
         return f"'{text}'" if is_string and _OTHER_TYPES.fullmatch(text) else text
 
-    def pairs(self, node: ast.expr, *, of_parameters: bool = False) -> list[tuple[str, str]] | None:
+    def pairs(self, node: ast.expr, *, are_parameters: bool = False) -> list[tuple[str, str]] | None:
         """Return the keys and values of a dictionary, of its ``items()``, or of a list of pairs; None for others.
 
         Args:
             node: the expression.
-            of_parameters: whether the values are parameters, so that the text shows their types; see `parameter_text`.
+            are_parameters: whether the values are parameters, so that the text shows their types; see `parameter_text`.
         """
-        value_text = self.parameter_text if of_parameters else self.joined_text
+        value_text = self.parameter_text if are_parameters else self.joined_text
         node = self._python.resolved(node)
         if isinstance(node, ast.Call) and called_name(node) == "list" and len(node.args) == 1:
             node = self._python.resolved(node.args[0])
@@ -178,7 +178,7 @@ class ExpressionTexts:
             node = self._python.resolved(node.func.value)
         bound = self.value(node)
         if bound.texts is not self:
-            return bound.texts.pairs(bound.node, of_parameters=of_parameters)
+            return bound.texts.pairs(bound.node, are_parameters=are_parameters)
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
             return [(keyword.arg or "", value_text(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):

@@ -18,14 +18,14 @@ from linkwright.review.launches.outlines import (
     SERVER_PARAMETER,
     Entry,
 )
-from linkwright.review.list_changes import EMPTY, list_items, shortened
+from linkwright.review.list_changes import EMPTY, list_items, shorten
 
 _ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
 """The beginnings of the names of settings in the order in which they are shown."""
 _MAX_SETTINGS = 16
-"""The number of settings that the line about an added or removed action shows."""
+"""The maximum number of settings in the line about an added or removed action."""
 _VALUES = ("to", "value", "appended value")
-"""The settings that are the value of an action with only one."""
+"""The settings that are the only value of an action."""
 _MAX_SETTING = 120
 _MAX_NAME = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
@@ -42,7 +42,7 @@ _SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspaw
 
 def title(entry: Entry) -> Phrase:
     """Return the kind and name of an action."""
-    name = shortened(entry.name, _MAX_NAME)
+    name = shorten(entry.name, _MAX_NAME)
     if entry.kind == "argument":
         return phrase("argument '{name}'", name=name)
     if entry.kind == "variable":
@@ -87,13 +87,13 @@ def _node_title(entry: Entry, name: str) -> Phrase:
 
 
 def served_names(entry: Entry) -> list[str]:
-    """Return the controllers that a spawner starts, or the frame that a static transform places; empty if unknown."""
+    """Return the controllers of a spawner, or the child frame of a static transform; empty if unknown."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
     if words == [text] and text.startswith("["):
         return []  # an expression that is not known
     if _SPAWNER.fullmatch(entry.name):
-        return list(_controllers(words))
+        return list(_spawned_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
         return []
     child = _CHILD.search(text)
@@ -104,7 +104,7 @@ def served_names(entry: Entry) -> list[str]:
     return [words[count - 1]] if count in _TRANSFORM_WORDS else []
 
 
-def _controllers(words: Sequence[str]) -> Iterator[str]:
+def _spawned_controllers(words: Sequence[str]) -> Iterator[str]:
     """Yield the words of a spawner's command line that are neither options nor their values."""
     is_value = False
     for word in words:
@@ -156,7 +156,7 @@ def _value_or_settings(entry: Entry) -> Phrase | None:
         return None
     names = [name for name in entry.settings if name != "description"]
     if len(names) == 1 and names[0] in _VALUES:
-        return as_phrase(shortened(entry.settings[names[0]], _MAX_NAME) or EMPTY)
+        return as_phrase(shorten(entry.settings[names[0]], _MAX_NAME) or EMPTY)
     return settings_text(entry)
 
 
@@ -175,6 +175,6 @@ def _setting_rank(setting: str) -> int:
 
 def _setting_text(name: str, value: str) -> str:
     if name == CONDITION:
-        return shortened(value, _MAX_SETTING)
+        return shorten(value, _MAX_SETTING)
     separator = " -> " if name.startswith(REMAPPING) else " "
-    return shortened(f"{name}{separator}{value or EMPTY}", _MAX_SETTING)
+    return shorten(f"{name}{separator}{value or EMPTY}", _MAX_SETTING)

@@ -31,7 +31,7 @@ def forwarding_reason(
     """
     if not entry.name.startswith(_PACKAGE) or old is None or new is None:
         return None
-    old_text, new_text = outlines[0].resolved(old), outlines[1].resolved(new)
+    old_text, new_text = outlines[0].resolve(old), outlines[1].resolve(new)
     if setting == _INPUT:
         return None if _may_be_among(old_text, [new_text]) else _input_reason(old_text)
     if setting != "arguments":
@@ -56,7 +56,7 @@ def _may_be_among(name: str, names: list[str]) -> bool:
 
 
 def _output_topics(entry: Entry, outline: LaunchOutline) -> list[str]:
-    return _read_topics(entry, outline.resolved(entry.settings.get("arguments", "")))[1]
+    return _read_topics(entry, outline.resolve(entry.settings.get("arguments", "")))[1]
 
 
 def _read_topics(entry: Entry, arguments: str) -> _Topics:

@@ -42,7 +42,7 @@ def other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, ve
     for entry in new.entries:
         if entry.kind != "node" or entry.name in known or entry.name.startswith(TRANSFORM_PUBLISHERS):
             continue
-        if condition_holds(new.resolved(entry.settings.get(CONDITION, ""))) is False:
+        if condition_holds(new.resolve(entry.settings.get(CONDITION, ""))) is False:
             continue
         is_localized = _LOCALIZATION.match(entry.name) and all(map(_LOCALIZED.fullmatch, frames))
         if _ANY_FRAME.match(entry.name) or is_localized or frames <= set(_parameter_words(entry, new, version)):
@@ -52,7 +52,7 @@ def other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, ve
 
 def _parent_and_child(transform: Entry, outline: LaunchOutline) -> list[str]:
     """Return the parent and child frames of a static transform, or an empty list if they are unknown."""
-    text = outline.resolved(transform.settings.get("arguments", ""))
+    text = outline.resolve(transform.settings.get("arguments", ""))
     names = served_names(Entry(transform.kind, transform.name, {"arguments": text}, transform.span))
     if not names:
         return []
@@ -69,7 +69,7 @@ def _parameter_words(node: Entry, outline: LaunchOutline, version: Version) -> I
     for setting, value in node.settings.items():
         if not setting.startswith("parameter"):
             continue
-        text = outline.resolved(value)
+        text = outline.resolve(value)
         yield from (word.strip("/") for word in _WORD.findall(text))
         for match in _SHARED.finditer(text):
             share = version.share_of(match["package"], version.root)

@@ -12,14 +12,14 @@ from linkwright.review.launches.effects import argument_removal_reason
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 
 _WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
-_USED = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
+_USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
 _COMMENT = re.compile(r"<!--.*?-->|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
 _PASSES_ALL = "pass_all_args"
 """The attribute with which an include of ROS 1 passes all arguments."""
 
 
 def report_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline, kept: Sequence[Entry]) -> None:
-    """Report the arguments that the old version uses, and that the new version does not use or does not name.
+    """Report the arguments that only the old version uses.
 
     Args:
         pair: the launch file.
@@ -49,7 +49,7 @@ def _may_use(text: str, name: str) -> bool:
 
 
 def _report_undeclared(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
-    """Report the undeclared arguments that the old version uses, and that the new version does not name."""
+    """Report the undeclared arguments that only the old version names."""
     used = {name: entry for entry in old.entries for name in _names_with_default(entry)}
     declared = {entry.name for outline in (old, new) for entry in outline.entries if entry.has_value}
     text = _read_text(pair.new_file) if used.keys() - declared else ""
@@ -77,4 +77,6 @@ def _is_argument(entry: Entry) -> bool:
 
 def _is_used(name: str, entries: Sequence[Entry]) -> bool:
     """Return whether an action uses an argument."""
-    return any(name in _USED.findall(text) for entry in entries for text in (entry.name, *entry.settings.values()))
+    return any(
+        name in _USED_ARGUMENT.findall(text) for entry in entries for text in (entry.name, *entry.settings.values())
+    )

@@ -19,7 +19,7 @@ from linkwright.review.robots.partial_robots import PartialPair, missing_names, 
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12
-"""The maximum number of argument sets to compare. Vendors' launch files can combine hundreds."""
+"""The maximum number of argument sets to compare. Launch files of vendors can combine hundreds."""
 
 
 _MAX_SWITCHES = 8
@@ -100,7 +100,7 @@ def find_cases(pair: FilePair) -> Iterator[Case]:
 def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Case]:
     """Yield the description with the opposite value of each boolean argument that both versions have.
 
-    The cases of callers that keep the default lack the parts under a condition. The other values are those of
+    The cases of callers that keep the default lack the parts under a condition. The other values come from
     the case that reads most of the changed files.
 
     Args:
@@ -204,7 +204,7 @@ def _argument_sets(pair: FilePair) -> dict[str, _Values]:
     for version, path in ((pair.versions.new, pair.new_path), (pair.versions.old, pair.old_path)):
         for called in _called_sets(version, path):
             values = called.values
-            translated = {name: pair.versions.translated(value, version) for name, value in values.items()}
+            translated = {name: pair.versions.translate_paths(value, version) for name, value in values.items()}
             old, new = (values, translated) if version.is_old else (translated, values)
             doubt = _count_doubts(called)
             found = sets.setdefault(_case_name(new, pair.versions.new), _Values(old, new, doubt))
@@ -289,4 +289,4 @@ def fault_of(result: Description | LinkwrightError, version: Version) -> Fault |
     reason = without_folder(first.message, version.root)
     if first.span is None:
         return Fault(reason)
-    return Fault(reason, version.unlabeled(first.span.file), first.span.line, first.span.column)
+    return Fault(reason, version.path_of_label(first.span.file), first.span.line, first.span.column)

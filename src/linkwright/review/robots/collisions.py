@@ -26,12 +26,12 @@ from linkwright.urdf.bodies import Bodies
 
 _SAMPLES = 300
 _MIN_COUNT = 3
-"""The minimum number of colliding samples for which a collision is reported. Small changes move the border of a few."""
+"""The minimum number of colliding samples of a reported collision. Small changes affect a few samples."""
 _MIN_CORNERS = 4
 _MIN_THICKNESS = 1e-6
-"""The maximum thickness of a mesh that has no volume, as a fraction of its length."""
+"""The maximum thickness of a mesh without volume, as a fraction of its length."""
 _DEPTH = 1e-4
-"""The depth in m from which two shapes collide; shapes that only touch do not."""
+"""The minimum depth in m of a collision. Shapes that only touch do not collide."""
 
 Array = NDArray[np.float64]
 Pair = tuple[str, str]
@@ -60,7 +60,7 @@ def collision_changes(
         old: the old robot.
         new: the new robot.
         links: the new names of the links that both robots have, by old name.
-        disabled: the pairs of links whose collisions do not count, such as those of a semantic description (SRDF).
+        disabled: the pairs of links whose collisions do not count, such as the disabled pairs of a semantic description (SRDF).
     """
     if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
         return

@@ -19,12 +19,12 @@ from linkwright.review.element_values import own_content
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
-from linkwright.review.merging import common_reason, merged
+from linkwright.review.merging import common_reason, merge_changes
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
-from linkwright.review.left_names import left_names
+from linkwright.review.left_names import find_left_names
 from linkwright.review.plugins import added_topics, contents_text, is_still_offered, missing_topics_reason
-from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
+from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.cases import Case, find_cases, find_switched_cases
 from linkwright.review.robots.collisions import collision_changes, may_change_collisions
@@ -36,7 +36,7 @@ from linkwright.xmltree.reader import read_bytes
 
 _EXPRESSION = b"$(find "
 _REFERENCE = "reference"
-"""The attribute of ``<gazebo>`` with the link or joint, which is the name of the extension."""
+"""The attribute of ``<gazebo>`` that names the link or joint, and thus the extension."""
 _DETAILS_OF_INERTIAL = ("origin rpy 0 0 0", "inertia ixy", "inertia ixz", "inertia iyz")
 
 
@@ -44,14 +44,14 @@ def compare_descriptions(pair: FilePair) -> None:
     """Compare two versions of a description with each set of argument values."""
     groups: dict[Hashable, _Group] = {}
     collisions: list[Change] = []
-    for case in _cases(pair, groups):
+    for case in _cases_to_compare(pair, groups):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
         pair.expanded.update(expanded_places(pair.versions, case.old, case.new))
         comparison = case.models.compare(case.old.robot, case.new.robot)
         frames = SharedFrames(case.old.robot, case.new.robot, comparison.links)
-        for change in _changes(pair, comparison, frames, case):
+        for change in _find_changes(pair, comparison, frames, case):
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
@@ -72,11 +72,11 @@ def compare_descriptions(pair: FilePair) -> None:
             if may_change_collisions(comparison.differences):
                 disabled = disabled_collisions(pair.versions.new.root)
                 collisions = list(collision_changes(old, new, comparison.links, disabled))
-    pair.changes += merged(group.change(pair.cases) for group in _merge_groups(groups.values()))
+    pair.changes += merge_changes(group.change(pair.cases) for group in _merge_groups(groups.values()))
     pair.changes += collisions
 
 
-def _cases(pair: FilePair, groups: Sized) -> Iterator[Case]:
+def _cases_to_compare(pair: FilePair, groups: Sized) -> Iterator[Case]:
     """Yield the cases of callers and, if these show no change, cases with inverted boolean arguments."""
     compared = []
     for case in find_cases(pair):
@@ -118,7 +118,7 @@ def _merge_groups(groups: Iterable[_Group]) -> Iterable[_Group]:
 # --- changes of a robot ----------------------------------------------------------------------------------------------
 
 
-def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> Iterator[Change]:
+def _find_changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> Iterator[Change]:
     old, new, partial = case.old.robot, case.new.robot, case.partial
     if old is None or new is None:
         return
@@ -126,7 +126,7 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
     if has_other_root:
         yield _root_change(old, new, frames)
     added = added_topics(comparison.differences)
-    differences = with_replaced_plugins(comparison.differences)
+    differences = merge_replaced_plugins(comparison.differences)
     added_links = AddedLinks(differences, new)
     for difference in join_value_differences(differences):
         if added_links.is_in_line_of_link(difference):
@@ -145,10 +145,10 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
         if difference.subject == "link" and difference.kind == "renamed":
             is_placed = partial is None or not partial.has_stand_ins
             text = _with_motion(text, frames.distance(difference.old or "") if is_placed else None)
-        yield Change(text, effect, reason, _mesh_location(pair, case, difference) or _location(pair, difference))
+        yield Change(text, effect, reason, _mesh_location(pair, case, difference) or _difference_location(pair, difference))
     if partial is None:
         links, joints = old.links.keys() - new.links.keys(), old.joints.keys() - new.joints.keys()
-        yield from left_names(new.extensions, links, joints, pair.location)
+        yield from find_left_names(new.extensions, links, joints, pair.location)
 
 
 def _root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:
@@ -198,7 +198,7 @@ def _mesh_location(pair: FilePair, case: Case, difference: Difference) -> Locati
     return None if path is None else Location(path, 1, 1)
 
 
-def _location(pair: FilePair, difference: Difference) -> Location | None:
+def _difference_location(pair: FilePair, difference: Difference) -> Location | None:
     """Return the location of the new value, or else of the old value; None for files outside the repository."""
     new, old = difference.new_place, difference.old_place
     return (pair.location(new.span) if new else None) or (pair.location(old.span, is_old=True) if old else None)

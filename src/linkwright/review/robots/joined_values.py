@@ -9,8 +9,8 @@ from itertools import groupby
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, phrase, term
 
-_BLOCKS = ("inertial", "limit")
-"""The properties whose values are joined: those of ``<inertial>`` and those of ``<limit>``."""
+_BLOCK_TAGS = ("inertial", "limit")
+"""The elements whose values are joined: ``<inertial>`` and ``<limit>``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def join_value_differences(differences: Iterable[Difference]) -> Iterator[Differ
 def _block_of(difference: Difference) -> tuple[str, str] | None:
     """Return the link or joint and the block of a changed value; None if the value cannot be joined."""
     block = difference.property.partition(" ")[0]
-    is_value = difference.kind == "changed" and block in _BLOCKS and block != difference.property
+    is_value = difference.kind == "changed" and block in _BLOCK_TAGS and block != difference.property
     return (difference.name, block) if is_value and difference.old and difference.new else None
 
 

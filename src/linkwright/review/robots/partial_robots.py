@@ -18,7 +18,7 @@ from linkwright.xacro.session import Inputs
 from linkwright.xmltree import Element
 
 _KEPT_AS_WRITTEN = frozenset({"name", "link", "joint", "filename", "type"})
-"""Attributes that may contain any text, so that an unevaluated one is compared as it is written."""
+"""Attributes that may contain any text, so that unevaluated values are compared as written."""
 _CALL = "xacro:"
 
 
@@ -29,7 +29,7 @@ class PartialRobot:
     Attributes:
         description: the description.
         omissions: the missing packages and files, and the parts that need them.
-        stand_ins: the names of links and joints that replace missing ones, so that the rest is one tree.
+        stand_ins: the names of links and joints that replace missing links and joints to connect the tree.
         unevaluated: the tags and names of links, joints and materials with values that could not be evaluated.
     """
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-_FEW = 64
-"""The number of positions for which chains are compared before their reach is searched."""
-_EQUAL = 1e-9
+_COMPARED_POSITIONS = 64
+"""The number of positions at which chains are compared before the search for their reach."""
+_MAX_EQUAL_DISTANCE_M = 1e-9
 """The maximum difference in m of equal distances."""
 _STARTS = 8
 """The number of sampled configurations that are the starting points of a search."""
@@ -106,11 +106,11 @@ def have_equal_distances(old: Chain, new: Chain, samples: Array) -> bool:
         return False
     if not (np.array_equal(old.low, new.low) and np.array_equal(old.high, new.high)):
         return False
-    first = samples[:_FEW]
-    return np.allclose(old.distances(first), new.distances(first), rtol=0.0, atol=_EQUAL)
+    first = samples[:_COMPARED_POSITIONS]
+    return np.allclose(old.distances(first), new.distances(first), rtol=0.0, atol=_MAX_EQUAL_DISTANCE_M)
 
 
-def reaches(old: Chain, new: Chain, old_samples: Array, new_samples: Array) -> tuple[float, float]:
+def compare_reaches(old: Chain, new: Chain, old_samples: Array, new_samples: Array) -> tuple[float, float]:
     """Return the reach of a chain in two robots in m.
 
     The search in each robot also starts from the best positions of the other robot. Otherwise the reach could seem to
