@@ -69,7 +69,7 @@ def compare_behavior(versions: Versions, path: str, seeds: int | None = None) ->
     Each version of the file runs with the packages of the same version, so the code of both versions runs.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         path: the file of the scenario, relative to the root of the repository.
         seeds: the number of seeds; None for the number in the scenario.
     """

@@ -39,7 +39,7 @@ class FoundCommit:
     """The first commit with the outcome of the newest commit.
 
     Attributes:
-        commit: the hash.
+        commit: the hash of the commit.
         before: the hash of a previous commit with another outcome: the first parent, or the last judged commit.
         title: the short hash, date, author and subject.
         undecided: the number of commits that could not be judged. One of them may be the first.
@@ -187,7 +187,7 @@ class PartCheck:
     """A check whether a link or joint is the same as in the newest commit.
 
     Args:
-        history: the commits.
+        history: the commits to search.
         values: the values of the description's arguments.
         name: the name of the link or joint.
 
@@ -265,7 +265,7 @@ class CommandCheck:
     """A check by a command that runs in the folder with the files of a commit.
 
     Attributes:
-        history: the commits.
+        history: the commits to search.
         words: the command; the word ``FILE`` is replaced by the path of the description.
     """
 

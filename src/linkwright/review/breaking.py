@@ -21,9 +21,9 @@ def breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | 
     """Return the reason why a difference breaks programs that use the robot, or None if it does not.
 
     Args:
-        difference: the difference.
-        old: the old robot.
-        new: the new robot.
+        difference: the difference between both versions.
+        old: the robot of the old version.
+        new: the robot of the new version.
     """
     if difference.subject == "link":
         return _link_reason(difference)
@@ -79,7 +79,7 @@ def extension_reason(difference: Difference, lost: Collection[tuple[str, str]] |
     """Return the reason why a difference of an element for another program is breaking, or None if it is not.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         lost: the ros2_control interfaces that the new robot no longer offers; see `interfaces_of`. None if
             the robots are unknown.
     """

@@ -140,7 +140,7 @@ class Figure:
     """A quantity of the whole subject in both versions.
 
     Attributes:
-        name: the quantity.
+        name: the name of the quantity.
         old: its old value as text; empty if there is none.
         new: its new value as text; empty if there is none.
         unit: the unit of both values; empty for counts.
@@ -157,7 +157,7 @@ class Problem:
     """The reason why a part of a comparison is missing.
 
     Attributes:
-        text: the reason.
+        text: the reason in one line.
         is_of_old: whether only the old version has the problem, so that the new version solves it.
         is_of_both: whether neither version can be read.
     """

@@ -22,7 +22,7 @@ def values_text(element: Element, limit: int, skipped: Collection[str] = ()) -> 
     """Return the values in an element, or None if there are none.
 
     Args:
-        element: the element.
+        element: the XML element.
         limit: the maximum number of values to show.
         skipped: the tags of the elements to leave out.
     """

@@ -36,7 +36,7 @@ class Fault(NamedTuple):
     """The reason why a version cannot be read.
 
     Attributes:
-        reason: the reason.
+        reason: the reason without its location.
         path: the file with the fault relative to the root, or its path outside; empty for the compared file.
         line: the line of the fault; 0 if unknown.
         column: the column of the fault.

@@ -21,7 +21,7 @@ class Findings:
     """The findings of a version.
 
     Attributes:
-        diagnostics: the findings.
+        diagnostics: the findings of the check.
         files: the paths of the descriptions and of the files that they include, if they could be read.
         reading_errors: the codes and messages of the errors that made descriptions unreadable.
     """

@@ -32,7 +32,7 @@ def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -
     """Return a finding with URIs in place of paths in share folders.
 
     Args:
-        finding: the finding.
+        finding: the finding to change.
         shares: the share folders outside the version, such as those that show installed files, by package.
     """
 

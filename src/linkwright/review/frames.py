@@ -26,8 +26,8 @@ class SharedFrames:
     one below it that the new robot has.
 
     Args:
-        old: the old robot.
-        new: the new robot.
+        old: the robot of the old version.
+        new: the robot of the new version.
         links: the new names of the links that both robots have, by old name.
 
     Attributes:

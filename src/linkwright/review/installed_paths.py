@@ -55,7 +55,7 @@ def package_facts(version: Version, package: str) -> BuildFacts | None:
     """Return the facts of the build file of a package, or None if no build file can be read.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         package: the folder of the package relative to the root; empty for the root.
     """
     for name, read in ((CMAKE_FILE, read_cmake_facts), (SETUP_FILE, read_setup_facts)):

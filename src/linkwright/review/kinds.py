@@ -55,7 +55,7 @@ class KindRule:
     """The rules for recognizing, comparing and reporting files of a kind.
 
     Attributes:
-        kind: the kind.
+        kind: the kind of the files.
         compare: the function that compares two versions.
         suffixes: the endings of the names. An ending without a leading dot or underscore is a whole name.
         added: the sentence for an added file.

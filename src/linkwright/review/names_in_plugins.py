@@ -19,7 +19,7 @@ def path_of_renamed(difference: Difference, path: str) -> str | None:
     """Return the path of a renamed element with its old name, or None if the difference is not a new name.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         path: the path of the value that differs.
     """
     element, is_name, _ = path.rpartition("@name")

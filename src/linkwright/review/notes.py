@@ -15,7 +15,7 @@ def is_unreadable_as_before(subject: Subject, changed: Collection[str | None]) -
     """Return whether a file is unchanged and unreadable in both versions.
 
     Args:
-        subject: the file.
+        subject: the file with its changes.
         changed: the paths of the changed files.
     """
     return (

@@ -28,7 +28,7 @@ class PathPair:
     """The paths of two runs with the same parameters and seed.
 
     Attributes:
-        seed: the seed.
+        seed: the seed of both runs.
         old: the path of the old version.
         new: the path of the new version.
         distance: the largest distance between both robots at the same time, in m.

@@ -95,7 +95,7 @@ def plugin_parts(element: Element, limit: int) -> list[Phrase]:
     """Return the plugins and sensors in an element with their values.
 
     Args:
-        element: the element.
+        element: the XML element.
         limit: the maximum number of values to show for each plugin or sensor.
     """
     parts: list[Phrase] = []
@@ -158,7 +158,7 @@ def is_still_offered(difference: Difference, added: frozenset[str]) -> bool:
     """Return whether another value of the new version contains the old name in a plugin.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         added: the names that the new version adds; see `added_topics`.
     """
     if difference.subject != "extension" or difference.kind != "changed" or not difference.old:
@@ -172,7 +172,7 @@ def missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phra
     """Return the reason why removing or replacing an element is breaking, or None. Its topics may be missing.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         added: the topics that other elements of the new version offer.
     """
     element = difference.element if is_removed(difference) else getattr(difference, "old_plugin", None)

@@ -20,7 +20,7 @@ def merge_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> li
     """Return the subjects, with the files of a renamed folder merged into one subject.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         subjects: all compared files.
     """
     groups: dict[_Folders, list[Subject]] = {}

@@ -83,7 +83,7 @@ class PackageNames:
     """The names of renamed packages in texts of the old version.
 
     Args:
-        packages: the packages.
+        packages: the renamed packages.
     """
 
     def __init__(self, packages: Sequence[RenamedPackage]) -> None:
@@ -119,7 +119,7 @@ class _Consequences:
     """The changes that only follow from new names and folders of packages.
 
     Attributes:
-        packages: the packages.
+        packages: the renamed packages.
         names: the names of the packages.
         classes: the new names of classes in plugin descriptions, by old name.
     """

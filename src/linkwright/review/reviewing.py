@@ -93,7 +93,7 @@ def review(
     """Compare two versions of a repository.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         packages: the names or folders of the packages to which the review is limited; empty for all files.
         workers: the number of parallel processes.
         scenarios: scenarios to run in both versions, relative to the root. They run code of the repository.
@@ -347,7 +347,7 @@ def _compare(
     """Compare a file in both versions.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         rule: the rule for the file.
         old_path: the path in the old version; None for an added file.
         new_path: the path in the new version; None for a removed file.

@@ -27,8 +27,8 @@ def robot_scene(models: Pair, old: Description, new: Description, roots: Sequenc
 
     Args:
         models: both models.
-        old: the old description.
-        new: the new description.
+        old: the description in the old version.
+        new: the description in the new version.
         roots: the folders of both versions of the repository.
     """
     from linkwright.panels.export.html import page_around, recorded_json

@@ -98,10 +98,10 @@ class Fact:
     """A fact of a build file.
 
     Attributes:
-        kind: the kind.
+        kind: the kind of the fact.
         name: the name of the target, package or other subject.
         value: a property that may change, such as the function of an executable; empty if there is none.
-        span: the location.
+        span: the location in the file.
         is_value_used: whether other packages use the value, so that another value is breaking.
         condition: the condition under which the fact holds, as written in the file; empty for always.
     """
@@ -204,7 +204,7 @@ def compare_build_files(
     """Compare two versions of a build file.
 
     Args:
-        pair: the versions.
+        pair: both versions of the build file.
         read: the function that returns the facts of a version, from its path in the repository.
         compare_more: a function that compares parts specific to this kind of build file.
     """
@@ -264,7 +264,7 @@ def _report_renamed(
     """Report the renamed facts, and remove them from both lists.
 
     Args:
-        pair: the versions.
+        pair: both versions of the build file.
         kind: the kind of the facts.
         removed: the facts of the old version.
         added: the facts of the new version.
@@ -301,9 +301,9 @@ def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) ->
     """Return the path of a source in the new version.
 
     Args:
-        pair: the versions.
-        old: the old facts.
-        new: the new facts.
+        pair: both versions of the build file.
+        old: the facts of the old version.
+        new: the facts of the new version.
         source: the path in the old version.
 
     Returns:

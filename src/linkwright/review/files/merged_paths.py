@@ -21,7 +21,7 @@ class MergedPaths:
         """Add a path, and return the index of its group.
 
         Args:
-            path: the path.
+            path: the path of the changed element.
             change: a key that is equal for all changes of a group.
         """
         words = path.split(" ")

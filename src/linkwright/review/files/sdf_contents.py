@@ -77,7 +77,7 @@ def added_text(path: str, element: Element) -> Phrase:
 
     Args:
         path: the path of the element, with the names of elements that were added with the same contents.
-        element: the element.
+        element: the XML element.
     """
     contents = joined(names) if (names := list(names_in(element))) else None
     if contents is None:

@@ -31,10 +31,10 @@ class _Entry:
     """A named element of a semantic description.
 
     Attributes:
-        tag: the tag.
+        tag: the tag of the element.
         name: the name. The name of a state begins with its group.
         values: the parts of the element by name. The values of group members are empty.
-        element: the element.
+        element: the XML element.
     """
 
     tag: str

@@ -30,7 +30,7 @@ class ValueChange:
         name: the path of the value or the part.
         kind: whether the value is added, removed or changed.
         values: both values of a change; the value of an addition or removal; or the values of a part, with their names.
-        location: the location.
+        location: the location of the value.
         reason: why the change is breaking; None if it is not.
     """
 

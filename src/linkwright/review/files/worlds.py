@@ -198,7 +198,7 @@ def _difference_sentence(difference: Difference, name: str) -> Phrase:
     """Return a difference in one line.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         name: the path of the element, with the names of other elements with the same difference.
     """
     old_path = path_of_renamed(difference, name)

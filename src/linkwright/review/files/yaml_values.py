@@ -84,7 +84,7 @@ def yaml_values(root: yaml.Node, labels: Mapping[int, str]) -> dict[str, YamlVal
     """Return the values of a document by their paths.
 
     Args:
-        root: the document.
+        root: the root node of the document.
         labels: the labels of list items in paths, by the identity of the item. Other items use their names or numbers.
 
     Raises:

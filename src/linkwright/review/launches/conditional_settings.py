@@ -14,7 +14,7 @@ class SettingPair:
     """A setting whose value or condition differs.
 
     Attributes:
-        name: the name.
+        name: the name of the setting.
         old: the old value; None if there was none.
         new: the new value; None if there is none.
         old_default: the old value with the defaults of the arguments; None if there was none.

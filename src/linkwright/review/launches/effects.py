@@ -83,8 +83,8 @@ def removal_reason(
 
     Args:
         entry: the action.
-        outline: the old file, which contains it.
-        new: the new file.
+        outline: the outline of the old file, which contains the action.
+        new: the outline of the new file.
         stops_nodes: whether the action includes a file with nodes that nothing else starts in the new version.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
@@ -181,8 +181,8 @@ def setting_reason(
         setting: the name of the setting.
         old: its old value; None if there was none.
         new: its new value; None if there is none.
-        old_outline: the old file.
-        new_outline: the new file.
+        old_outline: the outline of the old file.
+        new_outline: the outline of the new file.
     """
     if entry.kind == READING:
         return addition_reason(entry)
@@ -398,8 +398,8 @@ def _remapping_reason(
         source: the name in the node.
         old: the old name outside of it; None if it was the same.
         new: the new name outside of it; None if it is the same.
-        old_outline: the old file.
-        new_outline: the new file.
+        old_outline: the outline of the old file.
+        new_outline: the outline of the new file.
         is_known: whether the node certainly publishes or serves the name.
     """
     old_name = old_outline.resolve(source if old is None else old)

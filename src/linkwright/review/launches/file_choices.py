@@ -20,9 +20,9 @@ class FileChoices:
     """Report changes of the arguments that choose files in a launch file.
 
     Args:
-        pair: the launch file.
+        pair: both versions of the launch file.
         old: the old outline, with the new names of arguments.
-        new: the new outline.
+        new: the outline of the new file.
     """
 
     def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:

@@ -22,7 +22,7 @@ class Literals:
     remains part of the other code. To find these, the file is read once more with a mark in place of each literal.
 
     Args:
-        python: the file.
+        python: the parsed file.
         with_keys: whether to mark the keys of dictionaries, too. The code cannot look up marked keys.
     """
 
@@ -70,7 +70,7 @@ class CoveredLiterals:
     """The parts of function arguments and loop iterables that appear in actions.
 
     Args:
-        python: the file.
+        python: the parsed file.
         shown: the identities (`id`) of the literals that appear in actions.
         shown_keys: the identities of the dictionary keys that appear in actions.
 

@@ -54,7 +54,7 @@ class LaunchTag:
 
     Attributes:
         name: the name of the tag.
-        attributes: the attributes.
+        attributes: the attributes of the tag by name.
         span: the position of the tag in the file.
         text: the text inside it.
         children: the actions and settings inside it.

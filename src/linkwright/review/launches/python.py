@@ -50,7 +50,7 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     """Return the outline of a Python launch file.
 
     Args:
-        python: the file.
+        python: the parsed file.
         helpers: the functions of the repository that make actions.
     """
     reader = _Reader(python, helpers, ExpressionTexts(python))
@@ -84,7 +84,7 @@ class _Reader:
     """A reader of the actions of a file or of one of its functions.
 
     Attributes:
-        python: the file.
+        python: the parsed file.
         helpers: the functions of the repository that make actions.
         texts: the texts of expressions.
         extra: the keyword arguments that the caller of a function passes on with ``**``.

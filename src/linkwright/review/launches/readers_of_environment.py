@@ -16,7 +16,7 @@ def reader_of(version: Version, name: str, excluded: str) -> str | None:
     """Return a file that reads an environment variable, relative to the root, or None if there is none.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         name: the name of the variable.
         excluded: the path of a file that is not searched, relative to the root.
     """

@@ -41,7 +41,7 @@ def code_besides_actions(
     """Return the statements besides the actions, without names of variables, imports, comments and layout.
 
     Args:
-        python: the file.
+        python: the parsed file.
         covered: the identities of the calls that make actions.
         branches: the identities of the ``if`` statements whose conditions actions have.
     """

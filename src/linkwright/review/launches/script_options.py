@@ -51,7 +51,7 @@ class _Fault:
 
     Attributes:
         program: the name of the script.
-        option: the option.
+        option: the name of the option.
         is_missing: True if the launch file lacks a required option, False if the script refuses the option.
     """
 

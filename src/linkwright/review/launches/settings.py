@@ -40,7 +40,7 @@ class _Setting:
     """A changed setting.
 
     Attributes:
-        name: the name.
+        name: the name of the setting.
         old: the old value; None if there was none.
         new: the new value; None if there is none.
         reason: why the change is breaking; None if it is not.
@@ -74,9 +74,9 @@ class SettingChanges:
     """The changed settings of actions. The same change of several actions is reported once.
 
     Args:
-        pair: the file.
+        pair: both versions of the file.
         old: the old outline, with the new names of arguments.
-        new: the new outline.
+        new: the outline of the new file.
         renamed: the new names of arguments, by old name.
         included: the new actions and the actions of the included files.
     """

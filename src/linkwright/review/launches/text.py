@@ -32,7 +32,7 @@ class BoundExpression:
 
     Attributes:
         texts: the texts of the expressions where it is written.
-        node: the expression.
+        node: the syntax tree of the expression.
     """
 
     texts: ExpressionTexts
@@ -43,7 +43,7 @@ class ExpressionTexts:
     """The texts of expressions of a file.
 
     Args:
-        python: the file.
+        python: the parsed file.
         bindings: the texts of the parameters of the function that is read, by name.
         values: the expressions of parameters and of variables of loops, by name.
     """
@@ -167,7 +167,7 @@ class ExpressionTexts:
         """Return the keys and values of a dictionary, of its ``items()``, or of a list of pairs; None for others.
 
         Args:
-            node: the expression.
+            node: the syntax tree of the expression.
             are_parameters: whether the values are parameters, so that the text shows their types; see `parameter_text`.
         """
         value_text = self.parameter_text if are_parameters else self.joined_text

@@ -31,8 +31,8 @@ def other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, ve
 
     Args:
         transform: the removed static transform publisher.
-        old: the old file.
-        new: the new file.
+        old: the outline of the old file.
+        new: the outline of the new file.
         version: the new version, with the parameter files.
     """
     frames = {frame.strip("/") for frame in _parent_and_child(transform, old)}

@@ -22,9 +22,9 @@ def report_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutli
     """Report the arguments that only the old version uses.
 
     Args:
-        pair: the launch file.
+        pair: both versions of the launch file.
         old: the old outline, with the new names of arguments.
-        new: the new outline.
+        new: the outline of the new file.
         kept: the old actions that the new version has, too. Arguments of removed actions are not reported.
     """
     _report_undeclared(pair, old, new)

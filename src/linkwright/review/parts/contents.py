@@ -56,7 +56,7 @@ def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
     """Report the changes of elements that no compared robot shows.
 
     Args:
-        pair: the file.
+        pair: both versions of the file.
         renamed: the new names of macros, by old name.
     """
     changes = [
@@ -162,9 +162,9 @@ class _ReportedDifference:
     """A difference in a file or macro, with its sentence.
 
     Attributes:
-        pair: the file.
+        pair: both versions of the file.
         macro: the macro that contains it, or None outside of macros.
-        difference: the difference.
+        difference: the difference between both versions.
         shows_contents: whether the line about an added or removed element contains its values.
     """
 

@@ -16,7 +16,7 @@ class IncludeGraph:
     """The includes between the descriptions of a version.
 
     Args:
-        version: the version.
+        version: the version of the repository.
     """
 
     def __init__(self, version: Version) -> None:

@@ -32,7 +32,7 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
     """Report the macros and parameters that the new version of a part adds, removes or changes.
 
     Args:
-        pair: the part.
+        pair: both versions of the part.
         graphs: the includes of both versions.
         renamed: the new names of macros, by their old names.
     """
@@ -229,7 +229,7 @@ def find_renamed_macros(pair: PartPair, similarity: Mapping[tuple[str, str], flo
     """Yield the old and new names of renamed macros, whose contents are similar.
 
     Args:
-        pair: the part.
+        pair: both versions of the part.
         similarity: the share of equal elements of two macros, from 0 to 1, by their names.
     """
     taken: set[str] = set()

@@ -28,7 +28,7 @@ class Item:
 
     Attributes:
         key: the tag and the name, which identify the element among its siblings.
-        element: the element.
+        element: the XML element.
         conditions: the conditions, such as ``if ${x}``, the outermost first.
     """
 
@@ -42,7 +42,7 @@ class MacroOutline:
     """An unexpanded macro.
 
     Attributes:
-        name: the name.
+        name: the name of the macro.
         element: the element that defines it.
     """
 
@@ -123,7 +123,7 @@ def join_items(items: Sequence[Item], conditions: tuple[str, ...] | None) -> Ite
     """Return several ``<gazebo>`` elements of a link as one.
 
     Args:
-        items: the elements.
+        items: the elements to join.
         conditions: the common conditions of all elements; None if they differ, to keep them around the children.
     """
     first = items[0]

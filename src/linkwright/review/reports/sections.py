@@ -32,7 +32,7 @@ class Section:
     """A subject in a report.
 
     Attributes:
-        subject: the subject.
+        subject: the reviewed file.
         changes: its changes, breaking changes first, without the changes listed in an earlier section.
         repeated: the number of changes that an earlier section lists, by the path of its subject.
         alike: the paths of other subjects of the same kind with the same changes. They have no section.

@@ -19,7 +19,7 @@ class AddedLinks:
 
     Args:
         differences: the differences of the robots.
-        new: the new robot.
+        new: the robot of the new version.
     """
 
     def __init__(self, differences: Sequence[Difference], new: Robot) -> None:

@@ -33,8 +33,8 @@ class Case:
 
     Attributes:
         name: the values as ``name:=value`` words; empty for the defaults.
-        old: the old description.
-        new: the new description.
+        old: the description in the old version.
+        new: the description in the new version.
         models: both models.
         partial: both robots, if they lack packages or files that neither version has; else None.
     """
@@ -104,7 +104,7 @@ def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Ca
     the case that reads most of the changed files.
 
     Args:
-        pair: the description.
+        pair: both versions of the description.
         compared: the cases that show no change.
     """
     changed = {file.new_path for file in pair.versions.changed_files if file.new_path}

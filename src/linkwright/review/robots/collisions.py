@@ -57,8 +57,8 @@ def collision_changes(
     Nothing is yielded without MuJoCo (extra ``sim``) or for links that the old version lacks.
 
     Args:
-        old: the old robot.
-        new: the new robot.
+        old: the robot of the old version.
+        new: the robot of the new version.
         links: the new names of the links that both robots have, by old name.
         disabled: the pairs of links whose collisions do not count, such as the disabled pairs of a semantic description (SRDF).
     """

@@ -52,14 +52,14 @@ class RobotMeasures:
     """The quantities of a robot with all joints at the initial positions of joint_state_publisher.
 
     Args:
-        robot: the robot.
+        robot: the robot with its links and joints.
         model: the description of the robot.
         root: the frame of the root link in the frame of the figures.
         frames: the frames of the links in the frame of the figures.
         old_joints: the old names of renamed joints, by new name.
 
     Attributes:
-        robot: the robot.
+        robot: the robot with its links and joints.
         meshes: the meshes of the robot.
         frames: the frames of the links, shape (4, 4) each.
         link_names: the links in the order of the frames of `sampled_frames`.

@@ -27,7 +27,7 @@ class PartialRobot:
     """A robot without the missing files and packages.
 
     Attributes:
-        description: the description.
+        description: the expanded description.
         omissions: the missing packages and files, and the parts that need them.
         stand_ins: the names of links and joints that replace missing links and joints to connect the tree.
         unevaluated: the tags and names of links, joints and materials with values that could not be evaluated.

@@ -129,7 +129,7 @@ class _Files:
     """The Python sources of a version, except tests.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         removed: the paths of modules that only the other version has.
     """
 

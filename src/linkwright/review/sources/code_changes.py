@@ -27,7 +27,7 @@ class CodeChange(NamedTuple):
     """The functions of a source whose code changes.
 
     Attributes:
-        text: the functions.
+        text: the names of the functions.
         line: the line of the first function.
         is_old: whether the line is in the old version.
     """
@@ -49,8 +49,8 @@ def code_change(
     Without changed functions and other lines, the change names classes with changes outside of functions, or imports.
 
     Args:
-        old: the old code.
-        new: the new code.
+        old: the code of the old version.
+        new: the code of the new version.
         reported: the other lines about the source.
         has_moved: whether another source has a function of the given code, with the same code.
         names: the names in the new version.
@@ -191,7 +191,7 @@ class _ReportedLines:
     """The other lines that are reported about a source.
 
     Args:
-        changes: the lines.
+        changes: the changes that the lines report.
     """
 
     def __init__(self, changes: Sequence[Change]) -> None:

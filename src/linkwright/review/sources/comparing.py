@@ -89,7 +89,7 @@ class _Side:
     """The names in the changed sources of a version.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         paths: the paths of the sources; None for a source that the version lacks.
     """
 
@@ -155,7 +155,7 @@ class _Side:
         """Return whether neither a changed source nor another source of the same package has a name.
 
         Args:
-            item: the name.
+            item: the name to search for.
             path: the path of a source of the package.
         """
         if item.kind is NameKind.IMPORT:

@@ -95,7 +95,7 @@ class _Reader:
     """Reads the names in a C++ source.
 
     Args:
-        source: the source.
+        source: the text of the source.
         names: the collection to which the names are added.
     """
 

@@ -72,10 +72,10 @@ class SourceName:
     """A name in a source.
 
     Attributes:
-        kind: the kind.
+        kind: the kind of the name.
         name: the name as written, or the text of the expression that computes it.
         type: the type of the messages, or the default of a parameter or option; empty if it is not literal.
-        span: the location.
+        span: the location in the file.
         details: the other properties that are literal.
     """
 

@@ -68,7 +68,7 @@ def find_failing_imports(version: Version, package: str, path: str, names: Sourc
     They name a module beside the file, which Python 3 finds only if the program runs in that folder.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         package: the folder of the ROS package.
         path: the path of the ``__init__.py``.
         names: the names in the file.

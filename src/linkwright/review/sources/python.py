@@ -190,7 +190,7 @@ class _Reader:
     """Reads the names in a Python source.
 
     Args:
-        python: the source.
+        python: the parsed source.
         names: the collection to which the names are added.
     """
 

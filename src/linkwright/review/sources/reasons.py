@@ -20,7 +20,7 @@ def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
     C++ classes count if they are in a header for other packages, Python functions if they can be imported.
 
     Args:
-        kind: the kind.
+        kind: the kind of the names.
         path: the path of the source.
         names: the names in the source.
     """

@@ -107,7 +107,7 @@ def _make_signature(arguments: ast.arguments, first: int) -> Signature:
     """Return the signature of a list of parameters.
 
     Args:
-        arguments: the parameters.
+        arguments: the syntax tree of the parameters.
         first: the number of leading parameters to leave out, such as ``self``.
     """
     arguments = copy.deepcopy(arguments)

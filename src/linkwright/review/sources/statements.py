@@ -84,7 +84,7 @@ class Statement(NamedTuple):
     """A statement of a source.
 
     Attributes:
-        tokens: the tokens.
+        tokens: the tokens of the statement.
         literals: the literals that are compared.
         shape: the text of the statement with a mark in place of each of these literals.
     """

@@ -40,8 +40,8 @@ class Token(NamedTuple):
     """A token of a source.
 
     Attributes:
-        kind: the kind.
-        text: the characters.
+        kind: the kind of the token.
+        text: the characters of the token.
         start: the offset in the source.
         has_space: whether it follows a space or a comment.
     """
