@@ -156,7 +156,9 @@ class IncludedActions:
         outlines = [self.outline, *self._included.values()]
         declared = {entry.name for outline in outlines for entry in outline.entries if entry.has_value}
         file = self._version.file(self._path)
-        unknown = [e.span.line for e in entries if e.kind == "include" and self._file_of(e, file) is None]
+        unknown = [
+            entry.span.line for entry in entries if entry.kind == "include" and self._file_of(entry, file) is None
+        ]
         undeclared: dict[str, Entry] = {}
         for entry in entries:
             if unknown and entry.span.line > min(unknown):

@@ -27,7 +27,7 @@ _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", 
 
 def definitions_of(python: PythonFile) -> list[CodePart]:
     """Return the statements that assign a name for the only time."""
-    rest = _Rest(python, ())
+    rest = _CodeNormalizer(python, ())
     return [
         CodePart("", _unparse(node), python.span(node))
         for node in _all_statements(python.tree)
@@ -45,7 +45,7 @@ def code_besides_actions(
         covered: the identities of the calls that make actions.
         branches: the identities of the ``if`` statements whose conditions actions have.
     """
-    rest = _Rest(python, covered, branches)
+    rest = _CodeNormalizer(python, covered, branches)
     conditions = _failing_conditions(python.tree)
     parts = (
         CodePart(rest.statement_text(node), _unparse(_header_of(node)), python.span(node), conditions.get(id(node), ""))
@@ -92,7 +92,7 @@ def _header_of(node: ast.stmt) -> ast.stmt:
     return header
 
 
-class _Rest:
+class _CodeNormalizer:
     def __init__(self, python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> None:
         self._python = python
         self._branches = branches
@@ -104,16 +104,16 @@ class _Rest:
         known = self._texts.get(id(node))
         if known is None:
             self._texts[id(node)] = ""  # a name that is defined by itself
-            known = self._texts[id(node)] = shorten_text(self._text(node))
+            known = self._texts[id(node)] = shorten_text(self._normalize(node))
         return known
 
     def statement_text(self, node: ast.stmt) -> str:
         """Return a statement without its body in comparable form; empty if it only makes actions."""
         if not any(hasattr(node, name) for name in _BODIES):
             return self.text(node)
-        return "" if id(node) in self._branches else self._other(node)
+        return "" if id(node) in self._branches else self._fields_text(node)
 
-    def _text(self, node: ast.AST) -> str:
+    def _normalize(self, node: ast.AST) -> str:
         if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or id(node) in self._covered:
             return ""
         if isinstance(node, ast.Expr):
@@ -124,13 +124,13 @@ class _Rest:
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and self.is_definition(node):
             return ""
         if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _TRANSPARENT:
-            return self._group(node)
+            return self._group_text(node)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _ADDITIONS:
-            return self._other(node) if self._items(node.args) else ""
+            return self._fields_text(node) if self._items_text(node.args) else ""
         if isinstance(node, ast.AugAssign) and not self.text(node.value):
             return ""
         if isinstance(node, (ast.List, ast.Tuple)):
-            return self._items(node.elts)
+            return self._items_text(node.elts)
         if isinstance(node, ast.Starred):
             return self.text(node.value)
         if isinstance(node, ast.BinOp) and not self.text(node.left) and not self.text(node.right):
@@ -138,7 +138,7 @@ class _Rest:
         if isinstance(node, ast.Return):
             value = "" if node.value is None else self.text(node.value)
             return f"return {value}" if value else ""
-        return self._other(node)
+        return self._fields_text(node)
 
     def is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
         """Return whether a statement assigns a name that is assigned only once. The uses of the name show the value."""
@@ -148,7 +148,7 @@ class _Rest:
             for target in targets
         )
 
-    def _group(self, node: ast.Call) -> str:
+    def _group_text(self, node: ast.Call) -> str:
         """Return the contents of a group or launch description besides actions."""
         arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in _CONTENTS)]
         settings = [
@@ -156,13 +156,13 @@ class _Rest:
             for keyword in node.keywords
             if keyword.arg not in (*_CONTENTS, "condition", "initial_entities", "period")
         ]
-        return self._items(arguments) + "".join(settings)
+        return self._items_text(arguments) + "".join(settings)
 
-    def _items(self, nodes: list[ast.expr]) -> str:
+    def _items_text(self, nodes: list[ast.expr]) -> str:
         texts = dict.fromkeys(text for text in map(self.text, nodes) if text)
         return f"[{', '.join(texts)}]" if texts else ""
 
-    def _other(self, node: ast.AST) -> str:
+    def _fields_text(self, node: ast.AST) -> str:
         words = []
         for name, value in ast.iter_fields(node):
             if name in _UNCOMPARED_FIELDS or name in _BODIES:

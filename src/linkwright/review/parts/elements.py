@@ -63,16 +63,16 @@ class ItemComparison:
             if old_item is None or new_item is None:
                 yield _whole_difference(item_path, old_item, new_item)
                 continue
-            yield from self._conditions(old_item, new_item, item_path)
-            yield from self._values(old_item.element, new_item.element, item_path)
+            yield from self._compare_conditions(old_item, new_item, item_path)
+            yield from self._compare_values(old_item.element, new_item.element, item_path)
             yield from self.differences(old_item.element, new_item.element, item_path)
 
-    def _conditions(self, old: Item, new: Item, path: tuple[str, ...]) -> Iterator[PartDifference]:
+    def _compare_conditions(self, old: Item, new: Item, path: tuple[str, ...]) -> Iterator[PartDifference]:
         texts = [CONDITION_SEPARATOR.join(item.conditions) for item in (old, new)]
         if not self.are_equal_texts(*texts):
             yield PartDifference(path, "conditions", texts[0], texts[1], old.element, new.element)
 
-    def _values(self, old: Element, new: Element, path: tuple[str, ...]) -> Iterator[PartDifference]:
+    def _compare_values(self, old: Element, new: Element, path: tuple[str, ...]) -> Iterator[PartDifference]:
         for name in dict.fromkeys([*new.attributes, *old.attributes]):
             values = old.attributes.get(name), new.attributes.get(name)
             if not self.are_equal_texts(*values):
