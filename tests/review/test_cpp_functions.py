@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.sources.cpp_functions import declared_functions
+from linkwright.review.sources.cpp_functions import read_declared_functions
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 
@@ -42,7 +42,7 @@ FILES = {
 
 def test_functions_of_a_header_are_read_with_their_types():
     text = HEADER.replace("// namespace arm", "")
-    assert [each[:3] for each in declared_functions(text)] == [
+    assert [each[:3] for each in read_declared_functions(text)] == [
         ("Driver::Driver", ("const std::string&", "int = ..."), False),
         ("Driver::move", ("double", "std::map<int,double>"), True),
         ("Driver::stop", (), False),

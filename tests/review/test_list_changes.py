@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.list_changes import change_text, shortened
+from linkwright.review.list_changes import change_text, shorten
 
 
 @pytest.mark.parametrize(
@@ -17,7 +17,7 @@ from linkwright.review.list_changes import change_text, shortened
     ],
 )
 def test_shortened_text_ends_after_a_whole_item(text, expected):
-    assert shortened(text, 16) == expected
+    assert shorten(text, 16) == expected
 
 
 def test_lists_in_lists_are_compared_by_their_items():

@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
-from linkwright.review.merging import merged, name_edit
+from linkwright.review.merging import merge_changes, name_edit
 from linkwright.review.reports.sections import cases_text, sentence_of
 from tests.repositories import ARM, MACRO
 from tests.review.conftest import breaking, sentences, subject
@@ -141,7 +141,7 @@ def change(name: str, old: str, new: str) -> Change:
     ],
 )
 def test_names_with_the_same_edit_are_one_line_and_numbers_are_not(first, second, count):
-    assert len(merged([change("one", *first), change("two", *second)])) == count
+    assert len(merge_changes([change("one", *first), change("two", *second)])) == count
 
 
 def test_edit_of_a_name_is_a_prefix_or_words():

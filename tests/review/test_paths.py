@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from linkwright.review.paths import PathComparison, differing_paths, path_pair
+from linkwright.review.paths import PathComparison, compare_paths, find_differing_paths
 from linkwright.review.reports.path_plots import path_plot
 
 
@@ -19,23 +19,23 @@ def line(speed: float, period: float = 0.1, seconds: float = 4.0, y: float = 0.0
 
 
 def comparison(*pairs: tuple[np.ndarray, np.ndarray]) -> PathComparison:
-    return PathComparison("robot", "", [path_pair(str(seed), *paths) for seed, paths in enumerate(pairs)])
+    return PathComparison("robot", "", [compare_paths(str(seed), *paths) for seed, paths in enumerate(pairs)])
 
 
 def test_distance_is_between_positions_at_the_same_time():
-    pair = path_pair("0", line(1.0), line(1.5, period=0.07, seconds=3.5))
+    pair = compare_paths("0", line(1.0), line(1.5, period=0.07, seconds=3.5))
     assert (pair.distance, pair.time) == pytest.approx((1.75, 3.5))
     assert pair.ends == (pytest.approx((3.5, 0.0)), pytest.approx((5.25, 0.0)))
 
 
 def test_same_path_sampled_at_other_times_does_not_differ():
     runs = [("0", line(1.0), line(1.0, period=0.25, seconds=3.0))]
-    assert differing_paths({("robot", ""): runs}) == []
+    assert find_differing_paths({("robot", ""): runs}) == []
 
 
 def test_paths_without_a_common_time_have_a_distance():
     late = line(1.0, y=2.0) + np.array([10.0, 0.0, 0.0])
-    assert path_pair("0", line(1.0), late).distance == pytest.approx(math.hypot(4.0, 2.0))
+    assert compare_paths("0", line(1.0), late).distance == pytest.approx(math.hypot(4.0, 2.0))
 
 
 def test_largest_differences_come_first():
@@ -43,7 +43,7 @@ def test_largest_differences_come_first():
         ("robot", "speed=1"): [("0", line(1.0), line(1.1))],
         ("robot", "speed=2"): [("0", line(2.0), line(2.5))],
     }
-    assert [difference.parameters for difference in differing_paths(groups)] == ["speed=2", "speed=1"]
+    assert [difference.parameters for difference in find_differing_paths(groups)] == ["speed=2", "speed=1"]
 
 
 def test_typical_pair_is_the_median_and_the_farthest_is_always_shown():
@@ -72,7 +72,7 @@ def test_plot_of_a_robot_that_stood_still_has_a_frame():
 
 
 def test_path_names_are_escaped():
-    path_comparison = PathComparison("<b>'", "n=<i>", [path_pair("<s>", line(1.0), line(2.0))])
+    path_comparison = PathComparison("<b>'", "n=<i>", [compare_paths("<s>", line(1.0), line(2.0))])
     plot = path_plot(path_comparison)
     assert not re.search("<(b|i|s)>", plot)
     assert "aria-label='paths of both versions, &lt;b&gt;&#x27;, n=&lt;i&gt;'" in plot

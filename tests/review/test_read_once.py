@@ -104,7 +104,7 @@ def test_mesh_that_both_versions_have_is_read_once(repository, monkeypatch):
 
 
 def test_reach_is_not_searched_for_if_no_joint_changed(repository, monkeypatch):
-    monkeypatch.setattr("linkwright.review.robots.figures.reaches", None)
+    monkeypatch.setattr("linkwright.review.robots.figures.compare_reaches", None)
     text = ARM.format(PARTS)
     repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(1.0)})
     repository.write({"w/urdf/arm.urdf": text.replace('<mass value="1"', '<mass value="2"')})
@@ -114,7 +114,7 @@ def test_reach_is_not_searched_for_if_no_joint_changed(repository, monkeypatch):
 
 @pytest.mark.parametrize("joint", ["lower='-1'", "0 1 0"])
 def test_reach_is_searched_for_if_a_joint_changed(repository, monkeypatch, joint):
-    searches = counted(monkeypatch, figures, "reaches")
+    searches = counted(monkeypatch, figures, "compare_reaches")
     text = ARM.format(PARTS)
     repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(1.0)})
     repository.write({"w/urdf/arm.urdf": text.replace(joint, joint.replace("1", "0.5"))})

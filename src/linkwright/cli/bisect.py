@@ -16,7 +16,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
-    from linkwright.review.bisecting import CommandCheck, Found, History, PartCheck
+    from linkwright.review.bisecting import CommandCheck, FoundCommit, History, PartCheck
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -78,7 +78,7 @@ def _search(history: History, check: PartCheck | CommandCheck, unchanged: Phrase
     return FINE
 
 
-def _print(check: PartCheck | CommandCheck, change: Found) -> None:
+def _print(check: PartCheck | CommandCheck, change: FoundCommit) -> None:
     from linkwright.review.bisecting import PartCheck, difference_text, undecided_text
 
     print(change.title)

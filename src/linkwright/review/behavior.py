@@ -1,6 +1,6 @@
-"""The comparison of the results of a scenario, which runs in both versions with the same parameters and seeds.
+"""Compare the results of a scenario that runs in both versions with the same parameters and seeds.
 
-Runs are compared in pairs: of each set of parameters and each seed, the result of the new version with that of the old
+Runs are compared in pairs with equal parameters and seeds: the result of the new version with the result of the old
 one. The interval of the mean difference is a bootstrap (Efron 1979) with fixed random numbers. Paths of robots are
 compared point by point at the same times.
 """
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase, counted, foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.review.changes import Change, Effect, Problem, Subject, SubjectKind
-from linkwright.review.paths import PathComparison, differing_paths, read_paths
+from linkwright.review.paths import PathComparison, find_differing_paths, read_paths
 from linkwright.review.versions import Version, Versions
 
 _RESAMPLES = 4_000
@@ -30,7 +30,7 @@ _PERCENTILES = (2.5, 97.5)
 _SEED, _ROW, _ERROR = "seed", "row", "error"
 _MAX_PATHS = 4
 """The number of comparisons of paths that a report draws."""
-_TRUTH = {"true": 1.0, "false": 0.0}
+_BOOLEANS = {"true": 1.0, "false": 0.0}
 
 Row = Mapping[str, str]
 Parameters = tuple[str, ...]
@@ -66,12 +66,12 @@ class _Runs:
 def compare_behavior(versions: Versions, path: str, seeds: int | None = None) -> Subject:
     """Run a scenario in both versions, and compare its results.
 
-    The file of each version is run with the packages of that version. So the code of both versions runs.
+    Each version of the file runs with the packages of the same version, so the code of both versions runs.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         path: the file of the scenario, relative to the root of the repository.
-        seeds: the number of seeds; None for those of the scenario.
+        seeds: the number of seeds; None for the number in the scenario.
     """
     problems: list[Problem] = []
     old = _run(versions.old, path, seeds, problems)
@@ -80,12 +80,12 @@ def compare_behavior(versions: Versions, path: str, seeds: int | None = None) ->
         return Subject(SubjectKind.SCENARIO, path, path, path, problems=problems)
     old_runs = old.by_parameters if old.parameters == new.parameters else {}
     paths = _path_comparisons(old_runs, new)
-    changes = [*_changes(old_runs, new.by_parameters), *_path_changes(paths)]
+    changes = [*_find_changes(old_runs, new.by_parameters), *_path_changes(paths)]
     return Subject(SubjectKind.SCENARIO, path, path, path, changes, problems=problems, paths=paths[:_MAX_PATHS])
 
 
 def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]) -> _Runs | None:
-    """Return the runs of the scenario, or None if there are none."""
+    """Return the runs of the scenario in a version, or None if there are none."""
     with ScratchFolder("sweep") as folder:
         table, paths_file = Path(folder) / "table.csv", Path(folder) / "paths.json"
         options = [] if seeds is None else ["--seeds", str(seeds)]
@@ -110,7 +110,7 @@ def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]
     return _Runs(parameters[:-1], runs)
 
 
-def _changes(old: Mapping[Parameters, _Run], new: Mapping[Parameters, _Run]) -> Iterator[Change]:
+def _find_changes(old: Mapping[Parameters, _Run], new: Mapping[Parameters, _Run]) -> Iterator[Change]:
     pairs = [(old[key].row, run.row) for key, run in new.items() if key in old]
     if not pairs:
         yield Change(phrase("the versions have no run with the same parameters and seed"))
@@ -123,16 +123,16 @@ def _changes(old: Mapping[Parameters, _Run], new: Mapping[Parameters, _Run]) -> 
     names = [name for name in pairs[0][1] if name in pairs[0][0]]
     for name in names[names.index(_SEED) + 1 :]:
         if name != _ERROR:
-            yield from _result(name, [(old_row[name], new_row[name]) for old_row, new_row in pairs])
+            yield from _result_changes(name, [(old_row[name], new_row[name]) for old_row, new_row in pairs])
 
 
-def _result(name: str, pairs: Sequence[tuple[str, str]]) -> Iterator[Change]:
+def _result_changes(name: str, pairs: Sequence[tuple[str, str]]) -> Iterator[Change]:
     """Yield the change of a result, if any of its values differs."""
     known = [pair for pair in pairs if all(pair)]
     if all(old == new for old, new in known):
         return
-    if all(value in _TRUTH for pair in known for value in pair):
-        yield _bound(name, known)
+    if all(value in _BOOLEANS for pair in known for value in pair):
+        yield _boolean_change(name, known)
         return
     try:
         values = np.array([[float(value) for value in pair] for pair in known])
@@ -140,7 +140,7 @@ def _result(name: str, pairs: Sequence[tuple[str, str]]) -> Iterator[Change]:
         count = sum(old != new for old, new in known)
         yield Change(phrase("{result}: {count} of {total} values differ", result=name, count=count, total=len(known)))
         return
-    low, high = _interval(values[:, 1] - values[:, 0])
+    low, high = _confidence_interval(values[:, 1] - values[:, 0])
     old_mean, new_mean = values.mean(axis=0)
     text = phrase(
         "{result}: mean {old:.4g} -> {new:.4g}, difference {low:.3g} to {high:.3g}",
@@ -153,8 +153,8 @@ def _result(name: str, pairs: Sequence[tuple[str, str]]) -> Iterator[Change]:
     yield Change(phrase("{change}, within the noise", change=text) if low <= 0.0 <= high else text)
 
 
-def _bound(name: str, pairs: Sequence[tuple[str, str]]) -> Change:
-    """Return the change of a result that is true or false. One that was always true is a bound."""
+def _boolean_change(name: str, pairs: Sequence[tuple[str, str]]) -> Change:
+    """Return the change of a boolean result. A result that was always true in the old version is a bound."""
     counts = [sum(value == "true" for value in values) for values in zip(*pairs, strict=True)]
     text = phrase(
         "{result}: true in {old} -> {new} of {count} runs", result=name, old=counts[0], new=counts[1], count=len(pairs)
@@ -164,8 +164,8 @@ def _bound(name: str, pairs: Sequence[tuple[str, str]]) -> Change:
     return Change(text, Effect.BREAKING, phrase("it was true in all runs of the old version"))
 
 
-def _interval(differences: Array) -> tuple[float, float]:
-    """Return the limits between which the mean of paired differences is.
+def _confidence_interval(differences: Array) -> tuple[float, float]:
+    """Return the lower and upper limits of the mean of paired differences.
 
     Args:
         differences: a difference for each pair of runs, shape (runs,).
@@ -179,20 +179,20 @@ def _interval(differences: Array) -> tuple[float, float]:
 
 
 def _path_comparisons(old: Mapping[Parameters, _Run], new: _Runs) -> list[PathComparison]:
-    """Return the paths that differ, for each name and each set of parameters that are not drawn for a seed."""
+    """Return the paths that differ, for each name and each set of parameters. Random parameters are ignored."""
     keys = [key for key in new.by_parameters if key in old]
-    listed = [index for index in range(len(new.parameters)) if _is_listed(keys, index)]
+    listed = [index for index in range(len(new.parameters)) if _is_fixed(keys, index)]
     groups: dict[tuple[str, str], list[tuple[str, Array, Array]]] = defaultdict(list)
     for key in keys:
         old_paths, new_paths = old[key].paths, new.by_parameters[key].paths
         values = " ".join(f"{new.parameters[index]}={key[index]}" for index in listed)
         for name in (name for name in new_paths if name in old_paths):
             groups[name, values].append((key[-1], old_paths[name], new_paths[name]))
-    return differing_paths(groups)
+    return find_differing_paths(groups)
 
 
-def _is_listed(keys: Sequence[Parameters], index: int) -> bool:
-    """Return whether a parameter has the same values with each seed, so that it was not drawn for the seed."""
+def _is_fixed(keys: Sequence[Parameters], index: int) -> bool:
+    """Return whether a parameter has the same values for each seed, so that it is not random."""
     values: dict[str, set[str]] = defaultdict(set)
     for key in keys:
         values[key[-1]].add(key[index])

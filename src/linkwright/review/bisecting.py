@@ -1,4 +1,4 @@
-"""The search for the commit that changed a robot, by halving the history as git does."""
+"""Search for the commit that changed a robot by bisecting the history, as git does."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from linkwright.review.robots.descriptions import sentence_of_difference
 from linkwright.urdf import Robot
 
 _SKIPPED_STATUS = 125
-"""The exit status with which a command says that it cannot judge a commit, as for ``git bisect run``."""
+"""The exit status of a command that cannot judge a commit, as in ``git bisect run``."""
 
 
 class UndecidedError(Exception):
@@ -35,14 +35,14 @@ class UndecidedError(Exception):
 
 
 @dataclass(frozen=True)
-class Found:
-    """The first commit with the outcome of the newest one.
+class FoundCommit:
+    """The first commit with the outcome of the newest commit.
 
     Attributes:
-        commit: the hash.
-        before: the hash of a commit before it with another outcome: its first parent, or the last one that was judged.
+        commit: the hash of the commit.
+        before: the hash of a previous commit with another outcome: the first parent, or the last judged commit.
         title: the short hash, date, author and subject.
-        undecided: the number of commits that could not be judged, one of which may be the first.
+        undecided: the number of commits that could not be judged. One of them may be the first.
     """
 
     commit: str
@@ -52,7 +52,7 @@ class Found:
 
 
 class History:
-    """The commits of a file's repository.
+    """The commits of the repository of a file.
 
     Args:
         file: a file of the working tree.
@@ -80,19 +80,19 @@ class History:
         self._require_file(self.old, old or self.old)
 
     def name_in(self, commit: str) -> str | None:
-        """Return the name that the file has in a commit, relative to the root, or None if it does not exist."""
+        """Return the name of the file in a commit, relative to the root, or None if it does not exist."""
         return next((name for name in self._names if self._repository.contains(commit, name)), None)
 
     def files(self, commit: str) -> CommitFiles:
         """Return the files of a commit. The caller closes them."""
         return CommitFiles(self._repository, commit, commit[:9], must_be_complete=False)
 
-    def search(self, judge: Callable[[str], bool], on_step: Callable[[int], object]) -> Found | None:
-        """Return the first commit with the outcome of the newest one, or None if the oldest one has it already.
+    def search(self, judge: Callable[[str], bool], on_step: Callable[[int], object]) -> FoundCommit | None:
+        """Return the first commit with the outcome of the newest, or None if the oldest commit has that outcome, too.
 
         Args:
             judge: a function that returns the outcome of a commit, and raises `UndecidedError` if it cannot.
-            on_step: called before each step with the number of commits among which the first one is.
+            on_step: called before each step with the number of remaining candidates.
 
         Raises:
             LinkwrightError: REV113, the oldest or the newest commit cannot be judged.
@@ -113,7 +113,7 @@ class History:
             if commit is None:
                 parent = self._repository.resolve(f"{first}^")
                 before = parent if parent in earlier else earlier[-1]
-                return Found(first, before, self._title(first), len(undecided & set(candidates)))
+                return FoundCommit(first, before, self._title(first), len(undecided & set(candidates)))
             try:
                 has_outcome = judge(commit) == outcome
             except UndecidedError:
@@ -130,7 +130,7 @@ class History:
             raise LinkwrightError(Diagnostic("CLI344", message))
 
     def _require_ancestor(self, old: str, new: str) -> None:
-        """Raise if the oldest commit is not in the history of the newest one, so that no commit is between them."""
+        """Raise an error if the oldest commit is not in the history of the newest commit."""
         if self._repository.is_ancestor(self.old, self.new):
             return
         message = phrase("commit '{old}' is not in the history of '{new}'", old=old, new=new)
@@ -159,7 +159,7 @@ class History:
         return LinkwrightError(Diagnostic("REV113", message, notes=notes, hint=hint))
 
     def _candidates(self, first: str, earlier: Sequence[str]) -> list[str]:
-        """Return the commits that may be the first one besides `first`, those in the middle of the history first."""
+        """Return the candidates besides `first`, from the middle of the history outward."""
         excluded = [f"^{commit}" for commit in earlier]
         lines = self._repository.run("rev-list", "--bisect-all", first, *excluded).stdout.splitlines()
         return [commit for commit in (line.split(" ")[0] for line in lines) if commit != first]
@@ -168,7 +168,7 @@ class History:
         return self._repository.run("log", "--max-count=1", "--format=%h %as %an: %s", commit).stdout.strip()
 
     def _names_of(self, name: str) -> list[str]:
-        """Return the names that the file has had, the newest first."""
+        """Return the names of the file in the history, the newest first."""
         arguments = ("log", "--follow", "--name-only", "-z", "--format=", "--", name)
         names = self._repository.run(*arguments).stdout.split("\0")
         return list(dict.fromkeys([name, *filter(None, names)]))
@@ -187,7 +187,7 @@ class PartCheck:
     """A check whether a link or joint is the same as in the newest commit.
 
     Args:
-        history: the commits.
+        history: the commits to search.
         values: the values of the description's arguments.
         name: the name of the link or joint.
 
@@ -265,7 +265,7 @@ class CommandCheck:
     """A check by a command that runs in the folder with the files of a commit.
 
     Attributes:
-        history: the commits.
+        history: the commits to search.
         words: the command; the word ``FILE`` is replaced by the path of the description.
     """
 

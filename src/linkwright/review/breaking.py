@@ -1,4 +1,4 @@
-"""The rules for breaking changes of a description: names that other programs use."""
+"""Decide which changes of a description are breaking, by the names that other programs use."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _PART = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+)(?P<name> @name)?")
 
 
 def breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | None:
-    """Return why a difference breaks programs that use the robot, or None if it does not.
+    """Return the reason why a difference breaks programs that use the robot, or None if it does not.
 
     Args:
-        difference: the difference.
-        old: the old robot.
-        new: the new robot.
+        difference: the difference between both versions.
+        old: the robot of the old version.
+        new: the robot of the new version.
     """
     if difference.subject == "link":
         return _link_reason(difference)
@@ -56,31 +56,31 @@ def _joint_reason(difference: Difference, old: Robot) -> Phrase | None:
 
 
 def frame_reason(name: str) -> Phrase:
-    """Return why it is breaking that a link has gone."""
+    """Return the reason why removing a link is breaking."""
     return phrase("programs that look up the frame '{name}' do not find it", name=name)
 
 
 def name_reason(name: str) -> Phrase:
-    """Return why it is breaking that a topic, service or another name is gone."""
+    """Return the reason why removing a topic, service or other name is breaking."""
     return phrase("programs that use the name '{name}' do not find it", name=name)
 
 
 def possible_name_reason(name: str) -> Phrase:
-    """Return why it may be breaking that a name is gone which the node offers or only uses."""
+    """Return the reason why removing a name may be breaking if the node offers it."""
     return phrase("if the node publishes or serves '{name}', programs that use it do not find it", name=name)
 
 
 def joint_name_reason(name: str) -> Phrase:
-    """Return why it is breaking that a moving joint has gone."""
+    """Return the reason why removing a moving joint is breaking."""
     return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
 
 
 def extension_reason(difference: Difference, lost: Collection[tuple[str, str]] | None = None) -> Phrase | None:
-    """Return why a difference of an element for another program is breaking, or None if it is not.
+    """Return the reason why a difference of an element for another program is breaking, or None if it is not.
 
     Args:
-        difference: the difference.
-        lost: the interfaces of ros2_control that the new robot does not offer any more; see `interfaces_of`. None if
+        difference: the difference between both versions.
+        lost: the ros2_control interfaces that the new robot no longer offers; see `interfaces_of`. None if
             the robots are unknown.
     """
     if difference.name.startswith(ROS2_CONTROL):
@@ -105,13 +105,13 @@ def _hardware_reason(difference: Difference, lost: Collection[tuple[str, str]] |
     if part is None or (difference.new is not None and not is_renamed):
         return plugin_name_reason(difference)
     joint = difference.old if is_renamed else part["joint"]
-    if lost is not None and not any(each == joint for each, _ in lost):
+    if lost is not None and not any(lost_joint == joint for lost_joint, _ in lost):
         return None
     return phrase("controllers that claim interfaces of '{joint}' do not start", joint=joint)
 
 
 def plugin_name_reason(difference: Difference) -> Phrase | None:
-    """Return why a changed parameter of a plugin is breaking: it names topics, services or frames that others use."""
+    """Return the reason why a changed plugin parameter is breaking, or None. It may name topics, services or frames."""
     last_word = difference.property.split(" ")[-1]
     tag = difference.property.split(" ")[-2] if last_word.startswith("@") and " " in difference.property else last_word
     is_same = difference.new is not None and used_name(difference.old or "") == used_name(difference.new)

@@ -1,4 +1,4 @@
-"""The changed lines of scripts, device rules, container files and lists of packages."""
+"""Report the changed lines of scripts, device rules, container files and lists of packages."""
 
 from __future__ import annotations
 
@@ -11,22 +11,24 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.list_changes import excerpts, shortened
+from linkwright.review.list_changes import differing_excerpts, shorten
 from linkwright.review.versions import Versions
 
 _SUFFIXES = frozenset({".sh", ".bash", ".zsh", ".rules", ".service", ".dockerfile"})
-_NAMES = re.compile(r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env")
+_FILE_NAME = re.compile(
+    r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env"
+)
 _PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
 """A line of a list of packages."""
 _MAX_LINES = 6
-"""The number of changed lines up to which they are shown, except in a list of packages."""
+"""The maximum number of changed lines that are shown, except in a list of packages."""
 _MAX_LENGTH = 160
 _MAX_BYTES = 1 << 18
 _MIN_SIMILARITY = 0.5
 
 
 def changed_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
-    """Return the lines that a text file has gained and lost, or None for a file of another kind.
+    """Return the added and removed lines of a text file, or None for a file of another kind.
 
     Comments and empty lines are left out. Many lines are only counted.
     """
@@ -36,25 +38,27 @@ def changed_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
     try:
         if any(text.stat().st_size > _MAX_BYTES for text in texts):
             return None
-        old, new = ([*_lines(text.read_text("utf-8"))] for text in texts)
+        old, new = ([*_content_lines(text.read_text("utf-8"))] for text in texts)
     except (OSError, ValueError):
         return None
-    gone, come = (list((Counter(a) - Counter(b)).elements()) for a, b in ((old, new), (new, old)))
-    if not gone and not come:
+    removed, added = (list((Counter(a) - Counter(b)).elements()) for a, b in ((old, new), (new, old)))
+    if not removed and not added:
         return None
-    if all(map(_PACKAGE.fullmatch, (*gone, *come))):
-        return _parts(joined_first(come, MAX_NAMES), joined_first(gone, MAX_NAMES))
-    is_one = len(gone) == len(come) == 1
-    if is_one and SequenceMatcher(None, gone[0], come[0], autojunk=False).ratio() >= _MIN_SIMILARITY:
-        before, after = excerpts(gone[0], come[0])
+    if all(map(_PACKAGE.fullmatch, (*removed, *added))):
+        return _line_changes(joined_first(added, MAX_NAMES), joined_first(removed, MAX_NAMES))
+    is_one = len(removed) == len(added) == 1
+    if is_one and SequenceMatcher(None, removed[0], added[0], autojunk=False).ratio() >= _MIN_SIMILARITY:
+        before, after = differing_excerpts(removed[0], added[0])
         return phrase("{old} -> {new}", old=before, new=after)
-    if len(gone) + len(come) <= _MAX_LINES:
-        return _parts(*(joined([f"`{shortened(line, _MAX_LENGTH)}`" for line in lines]) for lines in (come, gone)))
-    counts = (counted("{count} line", "{count} lines", len(lines)) if lines else "" for lines in (come, gone))
-    return _parts(*counts)
+    if len(removed) + len(added) <= _MAX_LINES:
+        return _line_changes(
+            *(joined([f"`{shorten(line, _MAX_LENGTH)}`" for line in lines]) for lines in (added, removed))
+        )
+    counts = (counted("{count} line", "{count} lines", len(lines)) if lines else "" for lines in (added, removed))
+    return _line_changes(*counts)
 
 
-def _parts(added: Phrase | str, removed: Phrase | str) -> Phrase:
+def _line_changes(added: Phrase | str, removed: Phrase | str) -> Phrase:
     parts = [phrase("{items} added", items=added)] if added else []
     if removed:
         parts.append(phrase("{items} removed", items=removed))
@@ -63,10 +67,10 @@ def _parts(added: Phrase | str, removed: Phrase | str) -> Phrase:
 
 def _has_lines(path: str) -> bool:
     name = PurePosixPath(path).name.lower()
-    return PurePosixPath(name).suffix in _SUFFIXES or _NAMES.fullmatch(name) is not None
+    return PurePosixPath(name).suffix in _SUFFIXES or _FILE_NAME.fullmatch(name) is not None
 
 
-def _lines(text: str) -> Iterable[str]:
+def _content_lines(text: str) -> Iterable[str]:
     """Yield the lines of a text without comments, with continued lines as one."""
     for line in re.sub(r"\\\n\s*", "", text).splitlines():
         words = " ".join(line.split())

@@ -1,4 +1,4 @@
-"""The changes that a review reports, grouped by the files that users open or start."""
+"""Define the changes that a review reports, grouped by the files that users open or start."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.review.paths import PathComparison
 
 _QUOTED = re.compile("'[^']*'")
 MAX_NAMES = 40
-"""The number of names up to which a sentence lists all of them."""
+"""The maximum number of names that a sentence lists."""
 REMOVED_VALUE = "value"
 """The argument of a sentence that is the value of a removed property."""
 
@@ -22,7 +22,7 @@ class Effect(Enum):
     """The effect of a change on programs that use the package."""
 
     BREAKING = "breaking"
-    """Other programs use a name that is gone, or exchange data that no longer fits."""
+    """Other programs use a removed name, or exchange data that no longer fits."""
     CHANGED = "changed"
 
 
@@ -63,7 +63,7 @@ class Location:
         file: the path relative to the root of the repository.
         line: the line, starting at 1.
         column: the column, starting at 1.
-        is_old: whether the file is that of the old version.
+        is_old: whether it is the file of the old version.
     """
 
     file: str
@@ -83,8 +83,8 @@ class Change:
         location: the location of the new value, or of the old value if there is no new one; None if unknown.
         cases: the names of the argument sets with which the change occurs; empty for all of them.
         other_names: the names of other links, joints or extensions that change in the same way.
-        other_locations: the locations of their values, if they are not that of the first.
-        path_change: how the path of the file changed, if that is the change.
+        other_locations: the locations of their values, if they differ from the first location.
+        path_change: the kind of change of the path of the file; None for other changes.
     """
 
     sentence: Phrase
@@ -103,7 +103,7 @@ class Change:
 
     @property
     def identity(self) -> Hashable:
-        """A key that is equal for the same change of other links and joints that a macro creates.
+        """A key that is equal for the same change of links and joints of one macro.
 
         The label of a visual often contains the name of its link.
         """
@@ -113,7 +113,7 @@ class Change:
 
     @property
     def content(self) -> tuple[Effect, str, tuple[str, str, str, str]]:
-        """A key that is equal for the same change of other links and joints, wherever they are written."""
+        """A key that is equal for the same change of other links and joints, independent of their location."""
         return self.effect, _QUOTED.sub("", self.property_name), self.values
 
     @property
@@ -130,7 +130,7 @@ class Change:
 
     @property
     def core(self) -> Phrase:
-        """The sentence without what is added at its end."""
+        """The sentence without additions at its end."""
         core = self.sentence.arguments.get("change", self.sentence)
         return core if isinstance(core, Phrase) else self.sentence
 
@@ -140,7 +140,7 @@ class Figure:
     """A quantity of the whole subject in both versions.
 
     Attributes:
-        name: the quantity.
+        name: the name of the quantity.
         old: its old value as text; empty if there is none.
         new: its new value as text; empty if there is none.
         unit: the unit of both values; empty for counts.
@@ -157,8 +157,8 @@ class Problem:
     """The reason why a part of a comparison is missing.
 
     Attributes:
-        text: the reason.
-        is_of_old: whether only the old version has the problem, so that the new one solves it.
+        text: the reason in one line.
+        is_of_old: whether only the old version has the problem, so that the new version solves it.
         is_of_both: whether neither version can be read.
     """
 
@@ -182,7 +182,7 @@ class ExpandedPlace(NamedTuple):
     Attributes:
         path: the path of the file relative to the root.
         offset: the character offset of the element in the file, or `FILE`.
-        is_old: whether the file is that of the old version.
+        is_old: whether it is the file of the old version.
     """
 
     path: str
@@ -201,13 +201,13 @@ class Subject:
         new_path: the new path; None for a removed file.
         changes: the changes, in the order of the new version.
         figures: the quantities that differ.
-        problems: why a part of the comparison is missing.
+        problems: the reasons why parts of the comparison are missing.
         cases: the names of all argument sets that were compared.
         images: views of both versions.
         paths: the paths of robots that differ.
-        scene: both versions of a robot in 3D, if it was asked for.
+        scene: both versions of a robot in 3D; None if it was not requested.
         expanded: the elements of changed files that the compared robots show.
-        missing: the names of packages and files that neither version has, and that were left out.
+        missing: the names of omitted packages and files, which neither version has.
         is_lost: whether the new version cannot be read, and the old version can.
     """
 
@@ -228,7 +228,7 @@ class Subject:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to report."""
+        """Whether the subject has nothing to report."""
         return not (self.changes or self.figures or self.problems)
 
 
@@ -270,7 +270,7 @@ class Review:
         new_name: the new version in git's notation, or empty for the working tree.
         subjects: the compared files, with their differences.
         other_files: the changed files of other kinds, by path.
-        file_states: what happened to other files that are not in both versions under the same path, by path.
+        file_states: the states, such as removed, of other files whose path is not in both versions, by path.
         new_findings: the findings of `linkwright check` that the old version does not have.
         fixed_findings: the findings of the old version that the new version does not have.
         notes: the parts that the review does not cover.
@@ -287,7 +287,7 @@ class Review:
 
     @property
     def breaking_changes(self) -> list[tuple[Subject, Change]]:
-        """The breaking changes, each with its subject."""
+        """The breaking changes with their subjects."""
         return [
             (subject, change)
             for subject in self.subjects

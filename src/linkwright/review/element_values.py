@@ -1,4 +1,4 @@
-"""The values in XML elements that only one version has, in one line."""
+"""Summarize the values in an added or removed XML element in one line."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from linkwright.diagnostics import Phrase, joined_first
 from linkwright.xmltree import Element
 
 _NAMED_BY_CHILD = "include"
-"""The tag of elements whose name is a child, or the URI if there is none."""
+"""The tag of elements that have their name, or else their URI, as a child."""
 
 
 def own_content(element: Element, skipped: Collection[str] = ()) -> str:
-    """Return the attributes and the text of an element, without its name and some other attributes."""
+    """Return the attributes and the text of an element, without its name and the skipped attributes."""
     attributes = element.attributes.items()
     words = [f"{name}={value}" for name, value in attributes if name != "name" and name not in skipped]
     return " ".join([*words, *element.text().split()])
@@ -22,15 +22,15 @@ def values_text(element: Element, limit: int, skipped: Collection[str] = ()) -> 
     """Return the values in an element, or None if there are none.
 
     Args:
-        element: the element.
-        limit: the number of values that are shown.
-        skipped: the tags of the elements that are left out.
+        element: the XML element.
+        limit: the maximum number of values to show.
+        skipped: the tags of the elements to leave out.
     """
-    values = list(_values(element, "", skipped))
+    values = list(_values_by_path(element, "", skipped))
     return joined_first(values, limit) if values else None
 
 
-def _values(element: Element, path: str, skipped: Collection[str]) -> Iterator[str]:
+def _values_by_path(element: Element, path: str, skipped: Collection[str]) -> Iterator[str]:
     name_tag = "uri" if element.first("name") is None else "name"
     for child in element.elements():
         if child.tag in skipped or (element.tag == _NAMED_BY_CHILD and child.tag == name_tag):
@@ -39,4 +39,4 @@ def _values(element: Element, path: str, skipped: Collection[str]) -> Iterator[s
         content = own_content(child)
         if content or not any(child.elements()):
             yield f"{child_path} {content}".strip()
-        yield from _values(child, child_path, skipped)
+        yield from _values_by_path(child, child_path, skipped)

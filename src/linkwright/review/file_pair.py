@@ -1,4 +1,4 @@
-"""A file in both versions, with the results of its comparison."""
+"""Define a file in both versions, with the results of its comparison."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class UnreadableFileError(Exception):
     """Raised for a file that a comparison cannot read.
 
     Attributes:
-        reason: why.
+        reason: the reason why the file cannot be read.
     """
 
     def __init__(self, reason: Phrase) -> None:
@@ -29,18 +29,18 @@ class UnreadableFileError(Exception):
 
 
 class LimitError(UnreadableFileError):
-    """Raised for a file that is not read because of its size or place, and that may be right."""
+    """Raised for a file that is not read because of its size or place, although it may be valid."""
 
 
 class Fault(NamedTuple):
     """The reason why a version cannot be read.
 
     Attributes:
-        reason: the reason.
+        reason: the reason without its location.
         path: the file with the fault relative to the root, or its path outside; empty for the compared file.
         line: the line of the fault; 0 if unknown.
         column: the column of the fault.
-        is_certain: whether the file is at fault, and not the computer or a limit.
+        is_certain: whether the fault is in the file, and not in the computer or a limit.
     """
 
     reason: Phrase
@@ -58,11 +58,11 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True)
 class Drawings:
-    """Which drawings of the robots a review makes.
+    """The kinds of drawings of robots in a review.
 
     Attributes:
-        images: whether to make images from four sides.
-        scenes: whether to make scenes in 3D.
+        images: whether to render images from four sides.
+        scenes: whether to build 3D scenes.
     """
 
     images: bool = False
@@ -71,16 +71,16 @@ class Drawings:
 
 @dataclass
 class FilePair:
-    """A file that both versions have, to which its comparison adds its results.
+    """A file that both versions have. Its comparison adds the results.
 
     Attributes:
         versions: both versions.
         old_path: the path in the old version, relative to the root of the repository.
         new_path: the path in the new version, relative to the root of the repository.
-        drawings: what to draw of robots that look different.
+        drawings: the kinds of drawings of robots that look different.
         changes: the changes found so far.
         figures: the quantities that differ.
-        problems: why a part of the comparison is missing.
+        problems: the reasons why parts of the comparison are missing.
         cases: the names of the compared argument sets.
         images: images of both versions.
         scene: both versions in 3D.
@@ -114,7 +114,7 @@ class FilePair:
         return self.versions.new.file(self.new_path)
 
     def read(self, read: Callable[[Path], _Content]) -> tuple[_Content, _Content] | None:
-        """Return the contents of both versions, or None, with a problem or change added, if one cannot be read.
+        """Return the contents of both versions, or report a fault and return None if one cannot be read.
 
         Args:
             read: a function that reads a file, and raises `LinkwrightError`, `UnreadableFileError`, `OSError` or
@@ -127,9 +127,9 @@ class FilePair:
         return None
 
     def add_faults(self, old: Fault | None, new: Fault | None, cases: tuple[str, ...] = ()) -> None:
-        """Add why one or both versions cannot be read.
+        """Report the faults that make one or both versions unreadable.
 
-        A file that only one version can read is a change, which is breaking if it is the old version.
+        A file that is readable in only one version is a change; it is breaking if the new version is unreadable.
 
         Args:
             old: the fault of the old version; None if it can be read.
@@ -158,14 +158,14 @@ class FilePair:
             self.changes.append(Change(text, location=location, cases=cases))
 
     def add_unreadable(self, version: Version, fault: Fault, *, is_of_both: bool = False) -> None:
-        """Add the problem that a version cannot be read, once for each reason."""
+        """Report the problem that a version cannot be read, once for each reason."""
         text = phrase("the new version cannot be read: {reason}", reason=fault.text)
         if version.is_old:
             text = phrase("the old version cannot be read: {reason}", reason=fault.text)
         self._add(Problem(text, is_of_old=version.is_old, is_of_both=is_of_both))
 
     def add_unevaluated(self, names: list[str]) -> None:
-        """Add the problem that values of links and joints need definitions of missing files."""
+        """Report the problem that values of links and joints need definitions in missing files."""
         text = phrase(
             "values that need definitions of missing files are not compared: {names}", names=quoted_names(names)
         )
@@ -178,7 +178,7 @@ class FilePair:
         self.add_problem(text)
 
     def add_problem(self, text: Phrase) -> None:
-        """Add a reason why a part of the comparison is missing, once."""
+        """Report a reason why a part of the comparison is missing, once."""
         self._add(Problem(text))
 
     def _add(self, problem: Problem) -> None:
@@ -186,7 +186,7 @@ class FilePair:
             self.problems.append(problem)
 
     def add(self, sentence: Phrase, location: Location | None, reason: Phrase | None = None) -> None:
-        """Add a change, which is breaking if there is a reason why."""
+        """Report a change. A change with a reason is breaking."""
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         self.changes.append(Change(sentence, effect, reason, location))
 

@@ -1,4 +1,4 @@
-"""The findings of `linkwright check` in both versions, and which of them are new or fixed."""
+"""Compare the findings of `linkwright check` in both versions: new and fixed findings."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Findings:
     """The findings of a version.
 
     Attributes:
-        diagnostics: the findings.
+        diagnostics: the findings of the check.
         files: the paths of the descriptions and of the files that they include, if they could be read.
-        reading_errors: the codes and messages of the errors for which descriptions could not be read.
+        reading_errors: the codes and messages of the errors that made descriptions unreadable.
     """
 
     diagnostics: list[Diagnostic]
@@ -31,7 +31,7 @@ class Findings:
     reading_errors: frozenset[tuple[str, str]]
 
 
-def find(version: Version, targets: Targets) -> Findings:
+def find_findings(version: Version, targets: Targets) -> Findings:
     """Return the findings of a version about some files and packages."""
     files: set[str] = set()
     errors: set[tuple[str, str]] = set()
@@ -56,10 +56,10 @@ def find(version: Version, targets: Targets) -> Findings:
 def compare_findings(
     versions: Versions, old: Findings, new: Findings, new_paths: Mapping[str, str]
 ) -> tuple[list[Diagnostic], list[Diagnostic]]:
-    """Return the findings that only the new version has, and those that only the old version has.
+    """Return the findings that only the new version has, and the findings that only the old version has.
 
-    A finding in a description that the other version has but could not read, or that no robot there includes, may be
-    as old as the file. It is neither new nor fixed, and neither is one whose text has moved to another file.
+    A finding in a description that the other version could not read, or that no robot there includes, may be
+    as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file.
 
     Args:
         versions: both versions.
@@ -72,34 +72,34 @@ def compare_findings(
     sides = ((versions.new, new, old, versions.old, old_paths), (versions.old, old, new, versions.new, new_paths))
     added, fixed = (
         [
-            version.labeled(finding)
+            version.with_relative_paths(finding)
             for finding in new_findings(
-                own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _inverse(names))
+                own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _invert(names))
             )
             if _is_comparable(finding, version, own, other, other_version, names, changed)
         ]
         for version, own, other, other_version, names in sides
     )
-    return _unmoved(added, fixed), _unmoved(fixed, added)
+    return _without_moved(added, fixed), _without_moved(fixed, added)
 
 
-def _unmoved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings without those that the other version has in another file."""
-    counts = Counter(map(_text, others))
+def _without_moved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return the findings that the other version does not have in another file."""
+    counts = Counter(map(_message_key, others))
     result = []
     for finding in findings:
-        if counts[_text(finding)] > 0:
-            counts[_text(finding)] -= 1
+        if counts[_message_key(finding)] > 0:
+            counts[_message_key(finding)] -= 1
         else:
             result.append(finding)
     return result
 
 
-def _text(finding: Diagnostic) -> tuple[str, str]:
+def _message_key(finding: Diagnostic) -> tuple[str, str]:
     return finding.code, str(finding.message)
 
 
-def _inverse(names: Mapping[str, str]) -> dict[str, str]:
+def _invert(names: Mapping[str, str]) -> dict[str, str]:
     return {value: name for name, value in names.items()}
 
 
@@ -112,7 +112,7 @@ def _is_comparable(
     names: Mapping[str, str],
     changed: Collection[str],
 ) -> bool:
-    """Return whether the other version would have a finding, too, if its cause was there.
+    """Return whether the other version would have a finding, too, if it had the cause.
 
     This is the case if both versions of the file could be read, and also if neither could. However, checks that stop at
     different errors reach different files. A finding in a file that has not changed is then not compared.

@@ -1,4 +1,4 @@
-"""Texts without the folders of the versions, so that the same commits give the same report everywhere."""
+"""Remove the folders of the versions from texts, so that the same commits give the same report everywhere."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _Value = TypeVar("_Value")
 
 
 def without_folder(value: _Value, folder: Path) -> _Value:
-    """Return a text, or a tuple or mapping of texts, in which paths are relative to a folder.
+    """Return a text, or a tuple or mapping of texts, with paths relative to a folder.
 
     The arguments of phrases are treated in the same way. Paths in packages that are missing become URIs.
     """
@@ -25,14 +25,14 @@ def without_folder(value: _Value, folder: Path) -> _Value:
         text = text.replace(f"file://{folder}/", "").replace(f"{folder}/", "").replace(str(folder), ".")
         return text.replace(f"{STAND_IN_FOLDER}/", "package://")
 
-    return _changed(value, change)
+    return _change_texts(value, change)
 
 
 def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -> Diagnostic:
-    """Return a finding in which paths in share folders are URIs.
+    """Return a finding with URIs in place of paths in share folders.
 
     Args:
-        finding: the finding.
+        finding: the finding to change.
         shares: the share folders outside the version, such as those that show installed files, by package.
     """
 
@@ -41,27 +41,27 @@ def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -
             text = text.replace(f"{share}/", f"package://{name}/")
         return text
 
-    return _changed_finding(finding, change)
+    return _change_finding(finding, change)
 
 
-def _changed(value: _Value, change: Callable[[str], str]) -> _Value:
+def _change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
     """Return a text, or a tuple or mapping of texts, with all texts and arguments of phrases changed."""
     if isinstance(value, Phrase):
         if change(str(value)) == str(value):
             return value
         create, arguments = cast("tuple[Callable[..., _Value], tuple[object, ...]]", value.__reduce__())
-        return create(*(_changed(argument, change) for argument in arguments))
+        return create(*(_change_texts(argument, change) for argument in arguments))
     if isinstance(value, str):
         return cast(_Value, change(value))
     if isinstance(value, tuple):
-        return cast(_Value, tuple(_changed(item, change) for item in value))
+        return cast(_Value, tuple(_change_texts(item, change) for item in value))
     if isinstance(value, Mapping):
-        return cast(_Value, {name: _changed(item, change) for name, item in value.items()})
+        return cast(_Value, {name: _change_texts(item, change) for name, item in value.items()})
     return value
 
 
 def review_without_folder(result: Review, folder: Path) -> Review:
-    """Return a review with the texts of `without_folder`."""
+    """Return a review with its texts changed by `without_folder`."""
     return replace(
         result,
         subjects=[_subject_without_folder(subject, folder) for subject in result.subjects],
@@ -93,12 +93,12 @@ def _subject_without_folder(subject: Subject, folder: Path) -> Subject:
 
 
 def _finding_without_folder(finding: Diagnostic, folder: Path) -> Diagnostic:
-    """Return a finding with the texts of `without_folder`."""
-    return _changed_finding(finding, lambda text: without_folder(text, folder))
+    """Return a finding with its texts changed by `without_folder`."""
+    return _change_finding(finding, lambda text: without_folder(text, folder))
 
 
-def _changed_finding(finding: Diagnostic, change: Callable[[str], str]) -> Diagnostic:
+def _change_finding(finding: Diagnostic, change: Callable[[str], str]) -> Diagnostic:
     """Return a finding with its message, hint and notes changed."""
-    notes = tuple(note._replace(message=_changed(as_phrase(note.message), change)) for note in finding.notes)
-    hint = None if finding.hint is None else _changed(as_phrase(finding.hint), change)
-    return finding.with_changes(message=_changed(as_phrase(finding.message), change), hint=hint, notes=notes)
+    notes = tuple(note._replace(message=_change_texts(as_phrase(note.message), change)) for note in finding.notes)
+    hint = None if finding.hint is None else _change_texts(as_phrase(finding.hint), change)
+    return finding.with_changes(message=_change_texts(as_phrase(finding.message), change), hint=hint, notes=notes)

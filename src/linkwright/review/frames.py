@@ -1,4 +1,4 @@
-"""The frames of the links of two robots, in a frame that both robots have."""
+"""Compute the frames of the links of two robots in a common frame."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ Array = NDArray[np.float64]
 
 UNMOVED = Placement(IDENTITY, (0.0, 0.0, 0.0))
 _TOLERANCE = 1e-6
-"""The maximum difference in m, and between the entries of rotation matrices, of a link that has not moved."""
+"""The maximum difference, in m and between entries of rotation matrices, of a link that has not moved."""
 
 
 class SharedFrames:
-    """The frames of the links of two robots, with all joints at the positions at which joint_state_publisher starts.
+    """The frames of the links of two robots, with all joints at the initial positions of joint_state_publisher.
 
-    The root link of the new robot may be another one, such as a `base_footprint` below the old root. So the frames of
+    The new robot may have another root link, such as a `base_footprint` below the old root. So the frames of
     the new robot are placed so that a link of both robots is in the same place: the old root link, or else the first
     one below it that the new robot has.
 
     Args:
-        old: the old robot.
-        new: the new robot.
+        old: the robot of the old version.
+        new: the robot of the new version.
         links: the new names of the links that both robots have, by old name.
 
     Attributes:
-        old: the frames of the old robot in its root link's frame, by link.
+        old: the frames of the old robot in the frame of its root link, by link.
         new: the frames of the new robot in the same frame, by link.
         reference: the new name of the link that is in the same place; empty if the robots have no link in common.
-        are_aligned: whether this link is not the root link of both robots.
+        are_aligned: whether the reference link is not the root link of both robots.
         new_root: the frame of the new root link.
     """
 
@@ -52,17 +52,17 @@ class SharedFrames:
         self.new = {name: frame.inside(self.new_root) for name, frame in own_frames.items()}
 
     def distance(self, old_name: str) -> float | None:
-        """Return how far a link has moved, in m, or None if it has neither moved nor rotated or is not comparable."""
+        """Return the distance in m by which a link has moved, or None if its pose is unchanged or not comparable."""
         new_name = self._links.get(old_name, "")
         if old_name not in self.old or new_name not in self.new:
             return None
-        before, after = matrix(self.old[old_name]), matrix(self.new[new_name])
+        before, after = to_matrix(self.old[old_name]), to_matrix(self.new[new_name])
         if np.allclose(before, after, rtol=0.0, atol=_TOLERANCE):
             return None
         return float(np.linalg.norm(before[:3, 3] - after[:3, 3]))
 
 
-def matrix(placement: Placement) -> Array:
+def to_matrix(placement: Placement) -> Array:
     """Return a placement as a homogeneous matrix, shape (4, 4)."""
     result = np.eye(4)
     result[:3, :3] = placement.rotation

@@ -1,4 +1,4 @@
-"""The installed paths of moved files: other packages find a file that is installed at the same place."""
+"""Compare the installed paths of moved files. Other packages still find a file with the same installed path."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from linkwright.xacro.cache import read_document
 
 
 def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bool:
-    """Return whether a package certainly installs a moved file of its own where it did, or never installed it."""
+    """Return whether the installed path of a moved file certainly stays the same, or the file is not installed."""
     old_package, new_package = versions.old.package_of(old_path), versions.new.package_of(new_path)
     if old_package is None or old_package != new_package:
         return False
-    old_places = _places(versions.old, old_package, old_path)
-    return old_places is not None and old_places == _places(versions.new, old_package, new_path)
+    old_places = _installed_paths(versions.old, old_package, old_path)
+    return old_places is not None and old_places == _installed_paths(versions.new, old_package, new_path)
 
 
 def keeps_type(versions: Versions, old_path: str, new_path: str) -> bool:
-    """Return whether a moved interface of ROS 1 has the type that it had: names of its types have no folder."""
+    """Return whether a moved ROS 1 interface keeps its type. ROS 1 type names contain no folder."""
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     package = versions.new.package_of(new_path)
     if old.name != new.name or package is None or versions.old.package_of(old_path) != package:
@@ -38,8 +38,8 @@ def keeps_type(versions: Versions, old_path: str, new_path: str) -> bool:
     return is_built and Manifest(read_document(str(versions.new.root / package / MANIFEST))).is_ros1
 
 
-def _places(version: Version, package: str, path: str) -> frozenset[str] | None:
-    """Return the installed paths of a file without the name of its package, or None if they are not known."""
+def _installed_paths(version: Version, package: str, path: str) -> frozenset[str] | None:
+    """Return the installed paths of a file without the name of its package, or None if they are unknown."""
     folder = version.root / package
     if Manifest(read_document(str(folder / MANIFEST))).is_ros1:
         return None  # catkin also finds files in the source folder, whatever is installed
@@ -52,10 +52,10 @@ def _places(version: Version, package: str, path: str) -> frozenset[str] | None:
 
 @lru_cache(maxsize=64)
 def package_facts(version: Version, package: str) -> BuildFacts | None:
-    """Return the facts of the build file of a package, or None if it has none that can be read.
+    """Return the facts of the build file of a package, or None if no build file can be read.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         package: the folder of the package relative to the root; empty for the root.
     """
     for name, read in ((CMAKE_FILE, read_cmake_facts), (SETUP_FILE, read_setup_facts)):
@@ -75,7 +75,7 @@ def build_file(version: Version, package: str) -> str | None:
 
 
 def python_packages(version: Version, package: str) -> list[str]:
-    """Return the folders of the installed Python packages of a package, relative to it or to its folder ``src``."""
+    """Return the folders of the installed Python packages, relative to the package or to its ``src`` folder."""
     names: list[str] = []
     for name, read in ((CMAKE_FILE, read_cmake_facts), (SETUP_FILE, read_setup_facts)):
         path = f"{package}/{name}".lstrip("/")
@@ -89,7 +89,7 @@ def python_packages(version: Version, package: str) -> list[str]:
 
 
 def is_exported_header(version: Version, package: str, path: str) -> bool:
-    """Return whether other packages find a header: it is installed, or in a folder that catkin exports."""
+    """Return whether other packages find a header, which is installed or in a folder exported by catkin."""
     facts = package_facts(version, package)
     if facts is None:
         return False

@@ -1,4 +1,4 @@
-"""The kinds of reviewed files: how they are recognized and compared, and whether their removal is breaking."""
+"""Define the kinds of reviewed files: their names, their comparisons, and whether removing them is breaking."""
 
 from __future__ import annotations
 
@@ -52,18 +52,18 @@ _YAML_SUFFIXES = (".yaml", ".yml")
 
 @dataclass(frozen=True)
 class KindRule:
-    """The rule for files of a kind.
+    """The rules for recognizing, comparing and reporting files of a kind.
 
     Attributes:
-        kind: the kind.
+        kind: the kind of the files.
         compare: the function that compares two versions.
-        suffixes: the ends of the names; one that does not start with a dot or an underscore is a whole name.
+        suffixes: the endings of the names. An ending without a leading dot or underscore is a whole name.
         added: the sentence for an added file.
         removed: the sentence for a removed file.
-        removal_reason: why it is breaking to remove or rename a file; None if it is not.
+        removal_reason: the reason why removing or renaming a file is breaking; None if it is not.
         contents: the function that returns the contents of an added or removed file in one line, or None if they are
             unknown.
-        shows_removed: whether the line about a removed file has its contents.
+        shows_removed: whether the line about a removed file contains its contents.
         needs_contents: whether an added or removed file without contents is not reported.
     """
 
@@ -79,7 +79,7 @@ class KindRule:
 
 
 def _build_contents(read: Callable[[Version, str], BuildFacts], version: Version, path: str) -> Phrase | None:
-    """Return what a build file installs."""
+    """Return the contents of a build file in one line, or None if there are none."""
     return build_contents(read(version, path))
 
 
@@ -233,11 +233,11 @@ _REQUIREMENTS = KindRule(
 
 
 def rule_of_contents(rule: KindRule, version: Version, path: str) -> KindRule:
-    """Return the rule for an added or removed file, with the sentences for a model if a file of SDF has no world.
+    """Return the rule for an added or removed file, with the sentences for a model if an SDF file has no world.
 
     Args:
         rule: the rule for the name of the file.
-        version: the version that has the file.
+        version: the version that contains the file.
         path: the path relative to the root of the repository.
     """
     if rule.kind is not SubjectKind.WORLD or not is_model(version, path):
@@ -253,7 +253,7 @@ LAUNCH_HELPER = KindRule(
     phrase("functions for launch files removed"),
     phrase("launch files that import the module do not find it"),
 )
-"""The rule for modules that make actions for launch files."""
+"""The rule for Python modules that make actions for launch files."""
 
 
 MAP = KindRule(
@@ -269,17 +269,17 @@ MAP = KindRule(
 
 
 LAUNCH_FILE = next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
-"""The rule for launch files, also for XML files that others include."""
+"""The rule for launch files, including XML files that other launch files include."""
 
 
 def may_help_launch_files(path: str) -> bool:
-    """Return whether the path of a file can be that of a module with functions for launch files."""
+    """Return whether a path can be a module with functions for launch files."""
     pure_path = PurePosixPath(path)
     return pure_path.suffix == ".py" and pure_path.name != "setup.py" and TEST_FOLDERS.isdisjoint(pure_path.parts)
 
 
 def rule_of(path: str) -> KindRule | None:
-    """Return the rule for a file, or None for a file that is not compared.
+    """Return the rule for a file, or None if such files are not compared.
 
     Args:
         path: the path relative to the root of the repository.
@@ -292,8 +292,8 @@ def rule_of(path: str) -> KindRule | None:
         return LAUNCH_FILE
     if REQUIREMENTS.fullmatch(name):
         return _REQUIREMENTS
-    return next((rule for rule in _RULES if any(_has_name(name, suffix) for suffix in rule.suffixes)), None)
+    return next((rule for rule in _RULES if any(_matches_suffix(name, suffix) for suffix in rule.suffixes)), None)
 
 
-def _has_name(name: str, suffix: str) -> bool:
+def _matches_suffix(name: str, suffix: str) -> bool:
     return name.endswith(suffix) if suffix.startswith((".", "_")) else name == suffix

@@ -1,4 +1,4 @@
-"""Plugins and sensors that still name a link or joint that the new version does not have any more."""
+"""Find plugins and sensors that still name a removed link or joint."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _SCOPE = "::"
 """The separator of the names of models and links."""
 
 
-def left_names(
+def find_left_names(
     elements: Iterable[Element],
     links: Collection[str],
     joints: Collection[str],
     location: Callable[[Span | None], Location | None],
 ) -> Iterator[Change]:
-    """Yield the parameters of plugins and sensors that name lost links and joints, each as a breaking change.
+    """Yield a breaking change for each parameter of a plugin or sensor that names a removed link or joint.
 
     Args:
         elements: the elements of the new version.
@@ -34,12 +34,16 @@ def left_names(
         for element in user.walk():
             name = element.text().strip().rpartition(_SCOPE)[2]
             if LINK_TAG.search(element.tag) and name in links:
-                yield _change(user, element, phrase("the link '{name}' does not exist any more", name=name), location)
+                yield _make_change(
+                    user, element, phrase("the link '{name}' does not exist any more", name=name), location
+                )
             elif JOINT_TAG.search(element.tag) and name in joints:
-                yield _change(user, element, phrase("the joint '{name}' does not exist any more", name=name), location)
+                yield _make_change(
+                    user, element, phrase("the joint '{name}' does not exist any more", name=name), location
+                )
 
 
-def _change(
+def _make_change(
     user: Element, element: Element, reason: Phrase, location: Callable[[Span | None], Location | None]
 ) -> Change:
     text = phrase(

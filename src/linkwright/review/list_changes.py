@@ -1,4 +1,4 @@
-"""Changed values in one line: both values, or the items that lists have gained and lost."""
+"""Write changed values in one line: both values, or the added and removed items of lists."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from linkwright.review.word_changes import words_text
 EMPTY = "''"
 """An empty value as users write it."""
 _LONG_LIST = 4
-"""The number of items up to which both versions of a list are shown, unless they are too long to be whole."""
+"""The maximum number of items of lists that are shown in full, unless they are too long."""
 _LONG_VALUE = 200
-"""The number of characters up to which a value is shown as a whole."""
+"""The maximum number of characters of a value that is shown in full."""
 _LONG_NAME = 120
-"""The number of characters up to which an item of a list is shown as a whole."""
+"""The maximum number of characters of a list item that is shown in full."""
 _CONTEXT = 20
 """The number of characters that are shown on both sides of a difference."""
 
@@ -22,7 +22,7 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
 
     Args:
         name: the name of the value.
-        old: the old value; a list is written as ``[a, b]``.
+        old: the old value. A list has the form ``[a, b]``.
         new: the new value.
     """
     words = words_text(old, new) if max(len(old), len(new)) > _LONG_VALUE else None
@@ -32,7 +32,7 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     are_lists = all(value.startswith("[") and items != [value] for value, items in ((old, old_items), (new, new_items)))
     are_names = are_lists and all(len(item) <= _LONG_NAME for item in (*old_items, *new_items))
     is_cut = are_names and max(len(old), len(new)) > _LONG_VALUE
-    old, new = excerpts(old, new)
+    old, new = differing_excerpts(old, new)
     added, removed = set(new_items) - set(old_items), set(old_items) - set(new_items)
     is_set = len(set(old_items)) == len(old_items) and len(set(new_items)) == len(new_items)
     is_short = min(len(old_items), len(new_items)) <= _LONG_LIST and not is_cut
@@ -49,8 +49,8 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     )
 
 
-def shortened(text: str, limit: int) -> str:
-    """Return a text, or the beginning of one that is longer than a number of characters, up to a whole item."""
+def shorten(text: str, limit: int) -> str:
+    """Return a text, cut after a whole item if it is longer than a number of characters."""
     if len(text) <= limit:
         return text
     item_end, word_end = text.rfind(", ", limit // 2, limit), text.rfind(" ", limit // 2, limit)
@@ -59,19 +59,19 @@ def shortened(text: str, limit: int) -> str:
     return f"{text[:word_end]} ..." if word_end > 0 else f"{text[:limit]}..."
 
 
-def excerpts(old: str, new: str) -> tuple[str, str]:
-    """Return two values, or the parts in which they differ if they are long."""
+def differing_excerpts(old: str, new: str) -> tuple[str, str]:
+    """Return two values, or only their differing parts if they are long."""
     if max(len(old), len(new)) <= _LONG_VALUE:
         return old, new
     common = min(len(old), len(new))
     start = next((index for index in range(common) if old[index] != new[index]), common)
     rest = common - start
     end = next((index for index in range(rest) if old[-1 - index] != new[-1 - index]), rest)
-    return _excerpt(old, start, len(old) - end), _excerpt(new, start, len(new) - end)
+    return _cut_excerpt(old, start, len(old) - end), _cut_excerpt(new, start, len(new) - end)
 
 
-def _excerpt(text: str, start: int, end: int) -> str:
-    """Return a part of a text with some characters around it, from the start of a word if one is near."""
+def _cut_excerpt(text: str, start: int, end: int) -> str:
+    """Return a part of a text with some context, which starts at the beginning of a word if possible."""
     first = max(0, start - _CONTEXT)
     first = text.rfind(" ", max(0, first - _CONTEXT), first) + 1 or first
     last = min(len(text), end + _CONTEXT, first + _LONG_VALUE)
@@ -81,7 +81,7 @@ def _excerpt(text: str, start: int, end: int) -> str:
 
 
 def list_items(text: str) -> list[str]:
-    """Return the items of a value that is a list without lists in it, or the value itself."""
+    """Return the items of a flat list, or the value itself."""
     is_list = text.startswith("[") and text.endswith("]")
     content = text[1:-1] if is_list else text
     if not is_list or set(content) & set("[]{}"):
@@ -90,7 +90,7 @@ def list_items(text: str) -> list[str]:
 
 
 def _nested_items(text: str) -> list[str]:
-    """Return the items of a value that is a list, also of lists, or the value itself."""
+    """Return the items of a list, which may contain lists, or the value itself."""
     if not (text.startswith("[") and text.endswith("]")):
         return [text]
     return [item.strip() for item in _split(text[1:-1], "([{", ")]}") if item.strip()]

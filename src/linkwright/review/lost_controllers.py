@@ -1,4 +1,4 @@
-"""Launch files and scripts that still name controllers that only the old version has."""
+"""Find launch files and scripts that still name removed controllers."""
 
 from __future__ import annotations
 
@@ -10,38 +10,38 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import all_controllers
+from linkwright.review.files.parameter_names import find_all_controllers
 from linkwright.review.files.yaml_values import read_yaml_values
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SETTINGS = (".yaml", ".yml")
-_READERS = (".py", ".sh", ".launch", ".launch.xml")
+_READER_SUFFIXES = (".py", ".sh", ".launch", ".launch.xml")
 _COMMENT = re.compile(r"^[ \t]*#[^\n]*|<!--.*?-->", re.MULTILINE | re.DOTALL)
 _CONTROLLER = re.compile(r"controller|broadcaster|spawner")
-"""A word in the line or the name that tells that the name is that of a controller."""
+"""A word in the line or the name that marks the name as the name of a controller."""
 
 
-def lost_controllers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the files of the new version that name a controller that changed files do not have any more."""
-    old, new = _controllers(versions.old, changed_files), _controllers(versions.new, changed_files)
+def find_lost_controllers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the files of the new version that name a controller removed from the changed files."""
+    old, new = _controller_sources(versions.old, changed_files), _controller_sources(versions.new, changed_files)
     lost = {name: path for name, path in old.items() if name not in new}
     if not lost:
         return
-    paths = versions.new.paths((*_SETTINGS, *_READERS))
+    paths = versions.new.paths((*_SETTINGS, *_READER_SUFFIXES))
     files = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
     for path in files:
         if path.endswith(_SETTINGS):
-            for name in _names(versions.new, path):
+            for name in _controller_names(versions.new, path):
                 lost.pop(name, None)
     for path in files:
-        text = versions.new.text(path) if path.endswith(_READERS) else ""
+        text = versions.new.text(path) if path.endswith(_READER_SUFFIXES) else ""
         text = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
         for name, source in lost.items():
-            yield from ((path, change) for change in _uses(path, text, name, source))
+            yield from ((path, change) for change in _find_use(path, text, name, source))
 
 
-def _uses(path: str, text: str, name: str, source: str) -> Iterator[Change]:
-    """Yield the change about the first place where a file names a lost controller."""
+def _find_use(path: str, text: str, name: str, source: str) -> Iterator[Change]:
+    """Yield the change about the first place where a file names a removed controller."""
     pattern = re.compile(rf"(?<=[\"'\s])/?{re.escape(name)}(?=[\"'\s/])")
     for match in pattern.finditer(text):
         start = text.rfind("\n", 0, match.start()) + 1
@@ -54,14 +54,16 @@ def _uses(path: str, text: str, name: str, source: str) -> Iterator[Change]:
             return
 
 
-def _controllers(version: Version, changed_files: Sequence[ChangedFile]) -> dict[str, str]:
+def _controller_sources(version: Version, changed_files: Sequence[ChangedFile]) -> dict[str, str]:
     """Return the controllers in the changed parameter files of a version, with the paths of the files."""
     paths = (file.old_path if version.is_old else file.new_path for file in changed_files if not file.is_submodule)
-    return {name: path for path in paths if path and path.endswith(_SETTINGS) for name in _names(version, path)}
+    return {
+        name: path for path in paths if path and path.endswith(_SETTINGS) for name in _controller_names(version, path)
+    }
 
 
-def _names(version: Version, path: str) -> set[str]:
+def _controller_names(version: Version, path: str) -> set[str]:
     try:
-        return set(all_controllers(read_yaml_values(version.text(path))))
+        return set(find_all_controllers(read_yaml_values(version.text(path))))
     except UnreadableFileError:
         return set()

@@ -1,4 +1,4 @@
-"""Programs and parameter files of the new version that name a data file that only the old version has."""
+"""Find programs and parameter files that still name a removed data file."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
-_READERS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".yaml", ".yml")
-_PROGRAMS = frozenset({*_READERS[:6], ".c", ".sh", ".bash"})
+_READER_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".yaml", ".yml")
+_PROGRAM_SUFFIXES = frozenset({*_READER_SUFFIXES[:6], ".c", ".sh", ".bash"})
 """The suffixes of files that a build file or an import names."""
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
 _MIN_NAME = 5
 _MAX_FILES = 200
 
 
-def lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files of the new version that name a removed or renamed data file, each with a change.
 
-    Launch files are left out: `lost_references` finds the paths in them.
+    Launch files are left out: `find_lost_references` finds the paths in them.
     """
     lost = {
         PurePosixPath(file.old_path).name: file.old_path
@@ -34,7 +34,7 @@ def lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> Itera
     kept = {PurePosixPath(path).name for path in versions.new.paths(tuple(lost))}
     lost = {name: path for name, path in lost.items() if name not in kept}
     changed = {file.old_path: file.new_path for file in changed_files}
-    for path in versions.new.paths(_READERS) if lost else ():
+    for path in versions.new.paths(_READER_SUFFIXES) if lost else ():
         parts = PurePosixPath(path).parts
         if not TEST_FOLDERS.isdisjoint(parts) or ".launch." in path or path.endswith("_launch.py"):
             continue
@@ -42,17 +42,17 @@ def lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> Itera
         for name, old_path in lost.items():
             line = _line_of(text, name)
             if line and versions.new.package_of(path) == versions.old.package_of(old_path):
-                yield path, _change(path, name, line, is_renamed=changed.get(old_path) is not None)
+                yield path, _make_change(path, name, line, is_renamed=changed.get(old_path) is not None)
 
 
 def _is_data(path: str) -> bool:
     pure_path = PurePosixPath(path)
     is_named = len(pure_path.name) >= _MIN_NAME and pure_path.suffix not in ("", ".md", ".txt", ".xml")
-    return is_named and pure_path.suffix not in _PROGRAMS and TEST_FOLDERS.isdisjoint(pure_path.parts)
+    return is_named and pure_path.suffix not in _PROGRAM_SUFFIXES and TEST_FOLDERS.isdisjoint(pure_path.parts)
 
 
 def _line_of(text: str, name: str) -> int:
-    """Return the first line that names a file in quotes or at the end of a path; 0 if there is none."""
+    """Return the first line, starting at 1, that names a file in quotes or after a slash; 0 if there is none."""
     if name not in text:
         return 0
     pattern = re.compile(rf"(?<=[/\"']){re.escape(name)}(?=[\"'\s,\])]|$)", re.MULTILINE)
@@ -60,7 +60,7 @@ def _line_of(text: str, name: str) -> int:
     return next((number for number, line in enumerate(lines, 1) if pattern.search(line)), 0)
 
 
-def _change(path: str, name: str, line: int, *, is_renamed: bool) -> Change:
+def _make_change(path: str, name: str, line: int, *, is_renamed: bool) -> Change:
     text = phrase("names the file '{name}', which was removed", name=name)
     if is_renamed:
         text = phrase("names the file '{name}', which has another name now", name=name)

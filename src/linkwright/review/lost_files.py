@@ -1,4 +1,4 @@
-"""Files that a build file does not install any more because they are gone or have another name."""
+"""Find files that a build file no longer installs because they were removed or renamed."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect
-from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_folders, listed
+from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_folders, list_names
 from linkwright.review.installed_paths import build_file, package_facts, python_packages
 from linkwright.review.kinds import rule_of
-from linkwright.review.renamed_packages import renamed_packages
+from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _HEADERS = "include/"
 
 
-def lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the build files whose packages do not install files of the old version any more, each with a change.
+def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the build files whose packages no longer install files of the old version, each with a change.
 
-    Files that are compared on their own are reported with their own lines.
+    Files with their own comparison are left out.
     """
-    moved_packages = {package.old_folder for package in renamed_packages(versions)}
+    moved_packages = {package.old_folder for package in find_renamed_packages(versions)}
     changed = {file.path for file in changed_files}
     packages: dict[str, list[ChangedFile]] = {}
     for file in changed_files:
@@ -51,17 +51,17 @@ def _reports_nothing(path: str) -> bool:
 def _lost_targets(
     files: Sequence[ChangedFile], old: BuildFacts, new: BuildFacts, *, is_compared: bool
 ) -> Iterator[Change]:
-    """Yield the changes about files that are not installed any more, those about headers apart."""
+    """Yield the changes about files that are no longer installed, with headers in changes of their own."""
     if not new.unknown <= old.unknown:
         return
-    sources = {_within(old, file.old_path or ""): file for file in files}
+    sources = {_relative_to_package(old, file.old_path or ""): file for file in files}
     installed = set(new.files.values())
     lost = []
     for target, source in old.files.items():
         file = sources.get(source)
         if file is None or target in new.files:
             continue
-        if is_compared and file.new_path is not None and _within(new, file.new_path) not in installed:
+        if is_compared and file.new_path is not None and _relative_to_package(new, file.new_path) not in installed:
             continue  # the comparison of the build files reports it
         lost.append(target)
     headers = [target for target in lost if target.startswith(_HEADERS)]
@@ -71,33 +71,33 @@ def _lost_targets(
         (others, phrase("programs that look for the files do not find them")),
     ):
         if targets:
-            names = listed(files_and_folders(targets, new.files))
+            names = list_names(files_and_folders(targets, new.files))
             yield Change(phrase("not installed any more: {names}", names=names), Effect.BREAKING, reason)
 
 
-def _within(facts: BuildFacts, path: str) -> str:
-    """Return a path relative to the package, or as it is if the file is outside."""
+def _relative_to_package(facts: BuildFacts, path: str) -> str:
+    """Return a path relative to the package, or unchanged if the file is outside of it."""
     pure_path = PurePosixPath(path)
     return pure_path.relative_to(facts.package).as_posix() if pure_path.is_relative_to(facts.package) else path
 
 
 def _lost_modules(versions: Versions, files: Sequence[ChangedFile], old: BuildFacts) -> Iterator[Change]:
-    """Yield the changes about Python modules that are gone or renamed."""
+    """Yield the changes about removed and renamed Python modules."""
     packages = python_packages(versions.old, old.package)
     removed: dict[bool, list[str]] = {}
     for file in files:
-        module = _module(old, file.old_path or "", packages)
+        module = _module_name(old, file.old_path or "", packages)
         if module is None:
             continue
         is_program = read_source_names(versions.old.file(file.old_path or "")).is_program
-        new_module = None if file.new_path is None else _module(old, file.new_path, packages)
+        new_module = None if file.new_path is None else _module_name(old, file.new_path, packages)
         if new_module is None:
             removed.setdefault(is_program, []).append(module)
         elif new_module != module:
             text = phrase("Python module '{old}' renamed to '{new}'", old=module, new=new_module)
             yield _module_change(text, is_program=is_program)
     for is_program, names in removed.items():
-        text = phrase("{kind} removed: {names}", kind=FactKind.MODULE.title, names=listed(names))
+        text = phrase("{kind} removed: {names}", kind=FactKind.MODULE.title, names=list_names(names))
         yield _module_change(text, is_program=is_program)
 
 
@@ -105,9 +105,9 @@ def _module_change(text: Phrase, *, is_program: bool) -> Change:
     return Change(text) if is_program else Change(text, Effect.BREAKING, FactKind.MODULE.reason)
 
 
-def _module(facts: BuildFacts, path: str, packages: Collection[str]) -> str | None:
-    """Return the name of the module in a file of an installed Python package, or None for another file."""
-    pure_path = PurePosixPath(_within(facts, path))
+def _module_name(facts: BuildFacts, path: str, packages: Collection[str]) -> str | None:
+    """Return the module name of a file in an installed Python package, or None for another file."""
+    pure_path = PurePosixPath(_relative_to_package(facts, path))
     if pure_path.suffix != ".py" or not TEST_FOLDERS.isdisjoint(pure_path.parts):
         return None
     for package in packages:

@@ -1,4 +1,4 @@
-"""Equal changes of several links, joints or extensions in one line."""
+"""Merge equal changes of several links, joints or extensions into one line."""
 
 from __future__ import annotations
 
@@ -15,37 +15,41 @@ _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
 _TRANSMISSION = "transmission "
 _PART_OF_TRANSMISSION = re.compile(r"(joint|actuator) \S+")
-"""A joint or motor of a transmission, whose name is another one in each transmission."""
+"""A joint or motor of a transmission. Its name differs in each transmission."""
 _TOKEN = re.compile(r"[^\W_]+|[\W_]")
-"""A word or number of a name, or a character between two of them."""
+"""A word or number in a name, or a separating character."""
 _NO_NAME = re.compile(r"None|[\d\s.,;:+\-e<>()]*", re.ASCII)
-"""A missing value or numbers, of which only equal ones are the same change."""
+"""A missing value or numbers. They are the same change only if they are equal."""
 _OWN_NAME = "*"
 """The mark for the name of the changed link, joint or extension in its properties and values."""
 
 
-def merged(changes: Iterable[Change]) -> list[Change]:
-    """Return changes in which equal changes of several links, joints or extensions are one.
+def merge_changes(changes: Iterable[Change]) -> list[Change]:
+    """Return the changes, with equal changes of several links, joints or extensions merged.
 
-    Names are equal changes if the same part of them is replaced, such as a prefix that all links get.
+    New names are equal changes if the same part is replaced, such as a prefix of all links.
     """
-    for key, names in ((_content, _names), (_content_of_part, _part_names), (_parent_of_parameter, _parameter_names)):
+    for key, names in (
+        (_content_key, _all_names),
+        (_content_of_part, _part_names),
+        (_parent_of_parameter, _parameter_names),
+    ):
         groups: dict[Hashable, list[Change]] = {}
         for number, change in enumerate(changes):
             content = key(change) if change.name else None
             groups.setdefault(number if content is None else (content, change.cases), []).append(change)
-        changes = [group[0] if len(group) == 1 else _as_one(group, names) for group in groups.values()]
+        changes = [group[0] if len(group) == 1 else _merge_group(group, names) for group in groups.values()]
     return list(changes)
 
 
 def common_reason(reasons: Iterable[Phrase | None]) -> Phrase | None:
-    """Return one reason for breaking changes whose reasons differ in their names; None if they are not breaking."""
+    """Return one reason for breaking changes whose reasons differ only in names; None if they are not breaking."""
     distinct = list({str(reason): reason for reason in reasons}.values())
     first = distinct[0]
     return first if first is None or len(distinct) == 1 else phrase("{reason}; likewise for the others", reason=first)
 
 
-def _content(change: Change) -> Hashable:
+def _content_key(change: Change) -> Hashable:
     """Return a key that is equal for the same change of other links, joints or extensions."""
     own_name = change.name.rpartition(" ")[2]
     effect, property_name, (template, subject, old, new) = change.content
@@ -62,7 +66,7 @@ def _content(change: Change) -> Hashable:
 
 
 def name_edit(old: str, new: str) -> Hashable:
-    """Return the part of a name that is replaced and its replacement, or both values unless they are names."""
+    """Return the replaced part of a name and its replacement, or both values if they are not names."""
     if _NO_NAME.fullmatch(old) or _NO_NAME.fullmatch(new):
         return old, new
     start, end = _common_ends(old, new)
@@ -77,7 +81,7 @@ def name_edit(old: str, new: str) -> Hashable:
 def _common_ends(old: str | list[str], new: str | list[str]) -> tuple[int, int]:
     """Return the lengths of the common prefix and suffix.
 
-    The suffix is found first, and the two do not overlap.
+    The suffix takes precedence, so that the two do not overlap.
     """
     length = min(len(old), len(new))
     end = next((index for index in range(length) if old[-1 - index] != new[-1 - index]), length)
@@ -92,7 +96,7 @@ def _old_name(change: Change) -> str | None:
     return str(arguments["old"]) if is_renamed else None
 
 
-def _names(change: Change) -> tuple[str, ...]:
+def _all_names(change: Change) -> tuple[str, ...]:
     old_name = _old_name(change)
     return change.name if old_name is None else f"{old_name} -> {change.name}", *change.other_names
 
@@ -125,7 +129,7 @@ def _part_names(change: Change) -> tuple[str, ...]:
 
 
 def _parent_of_parameter(change: Change) -> Hashable | None:
-    """Return a key that is equal for parameters that the same element has gained or lost; None for other changes."""
+    """Return a key that is equal for parameters added to or removed from the same element; None for other changes."""
     parameter = _PARAMETER.fullmatch(change.property_name)
     if parameter is None or change.reason is not None or change.other_names or "old" in change.core.arguments:
         return None
@@ -140,7 +144,7 @@ def _parameter_names(change: Change) -> tuple[str, ...]:
     return (f"{parameter['parameter']} {arguments.get('new', arguments.get(REMOVED_VALUE, ''))}".strip(),)
 
 
-def _as_one(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]) -> Change:
+def _merge_group(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]) -> Change:
     first = changes[0]
     names = dict.fromkeys(name for change in changes for name in names_of(change))
     if names_of is _part_names:

@@ -1,4 +1,4 @@
-"""The names in extensions and worlds: topics, services and frames of plugins and sensors, and renamed elements."""
+"""Read names in extensions and worlds: topics, services and frames of plugins, and renamed elements."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ NAME_TAGS = re.compile(r"topic|namespace|frame(?!_?(rate|skip|count))|remapping|
 
 
 def used_name(value: str) -> str:
-    """Return the name that other programs use: the right side of a remapping such as ``~/out:=scan``."""
+    """Return the name that other programs use, such as the right side of a remapping ``~/out:=scan``."""
     return value.rpartition(":=")[2].strip()
 
 
 def path_of_renamed(difference: Difference, path: str) -> str | None:
-    """Return the path of an element with its old name, or None if the difference is not another name of it.
+    """Return the path of a renamed element with its old name, or None if the difference is not a new name.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         path: the path of the value that differs.
     """
     element, is_name, _ = path.rpartition("@name")

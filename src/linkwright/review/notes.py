@@ -1,4 +1,4 @@
-"""Notes about what a review does not compare, one for many files."""
+"""Write notes about files that a review does not compare, one note for many files."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from linkwright.diagnostics import Phrase, counted, quoted_names
 from linkwright.review.changes import Subject
 
 _MAX_NAMES = 5
-"""The number of missing packages and files that a note names."""
+"""The maximum number of missing packages and files that a note names."""
 
 
 def is_unreadable_as_before(subject: Subject, changed: Collection[str | None]) -> bool:
-    """Return whether neither version of a file that did not change can be read.
+    """Return whether a file is unchanged and unreadable in both versions.
 
     Args:
-        subject: the file.
+        subject: the file with its changes.
         changed: the paths of the changed files.
     """
     return (

@@ -1,4 +1,4 @@
-"""The changed files that a review does not compare: what happened to them, what they are, and changed lines."""
+"""Describe the changed files that a review does not compare: their states, kinds and changed lines."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from linkwright.review.renamed_packages import moved_files
 from linkwright.review.versions import Version, Versions
 
 _HEAD_BYTES = 4096
-"""The number of bytes at the beginning of a file that tell what it is."""
+"""The number of bytes at the beginning of a file by which its kind is recognized."""
 _MIN_FILES = 4
 """The minimum number of files of a folder that are summarized in one line."""
 
 
 def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, Phrase]:
-    """Return what happened to files that are not in both versions under the same path, and robots of other programs."""
+    """Return the states of files whose path is not in both versions, and of robots for other simulators, by path."""
     states: dict[str, Phrase] = {}
     files = list(files)
     moved = dict(moved_files(versions, files))
     for file in files:
-        state = _state(file)
+        state = _path_state(file)
         if file.path in moved:
             state = phrase("moved with the package from {folder}", folder=f"{moved[file.path] or '.'}/")
         version, path = (versions.new, file.new_path) if file.new_path else (versions.old, file.old_path)
-        kind = None if path is None or file.is_submodule else _kind(version, path)
+        kind = None if path is None or file.is_submodule else _foreign_kind(version, path)
         if state is None:
             state = kind or changed_lines(versions, file)
         elif kind is not None:
@@ -38,7 +38,7 @@ def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, P
     return states
 
 
-def _state(file: ChangedFile) -> Phrase | None:
+def _path_state(file: ChangedFile) -> Phrase | None:
     if file.old_path is None:
         return phrase("added")
     if file.new_path is None:
@@ -46,19 +46,19 @@ def _state(file: ChangedFile) -> Phrase | None:
     return None if file.old_path == file.new_path else phrase("renamed from {path}", path=file.old_path)
 
 
-def _kind(version: Version, path: str) -> Phrase | None:
-    """Return what a file is if it is a robot or world of another simulator; these are not compared."""
+def _foreign_kind(version: Version, path: str) -> Phrase | None:
+    """Return the kind of a robot or world of another simulator, which is not compared; None for other files."""
     suffix = PurePosixPath(path).suffix.lower()
     if suffix in (".usd", ".usda", ".usdc"):
         return phrase("robot or world in USD, not compared")
-    if suffix in (".wbt", ".proto") and _head(version, path).startswith(b"#VRML_SIM"):
+    if suffix in (".wbt", ".proto") and _read_beginning(version, path).startswith(b"#VRML_SIM"):
         return phrase("robot or world of Webots, not compared")
-    if suffix == ".xml" and b"<mujoco" in _head(version, path):
+    if suffix == ".xml" and b"<mujoco" in _read_beginning(version, path):
         return phrase("robot or world of MuJoCo, not compared")
     return None
 
 
-def _head(version: Version, path: str) -> bytes:
+def _read_beginning(version: Version, path: str) -> bytes:
     try:
         with version.file(path).open("rb") as file:
             return file.read(_HEAD_BYTES)
@@ -66,15 +66,15 @@ def _head(version: Version, path: str) -> bytes:
         return b""
 
 
-def grouped_files(paths: Iterable[str], states: Mapping[str, Phrase]) -> list[tuple[str, int, Phrase | None]]:
-    """Return files, or a folder for several files in it to which the same happened.
+def group_files(paths: Iterable[str], states: Mapping[str, Phrase]) -> list[tuple[str, int, Phrase | None]]:
+    """Return files, or a folder for several files in it with the same state.
 
     Args:
         paths: the paths of the files.
-        states: what happened to files, by path.
+        states: the states of files, by path.
 
     Returns:
-        The paths of the files or folders, the number of files, and what happened to them.
+        The paths of the files or folders, the number of files, and their states.
     """
     groups: dict[tuple[str, str], list[str]] = {}
     for path in paths:

@@ -1,4 +1,4 @@
-"""The paths of robots in the runs of a scenario, compared in pairs: by seed and by time."""
+"""Compare the paths of robots in the runs of a scenario in pairs, by seed and time."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 _TOLERANCE = 1e-4
 """The maximum distance in m between equal paths."""
 _MAX_POINTS = 200
-"""The number of points of each path in a report."""
+"""The maximum number of points of each path in a report."""
 _MAX_PAIRS = 24
-"""The number of pairs whose paths are in a report."""
+"""The maximum number of pairs of paths in a report."""
 
 Array = NDArray[np.float64]
 Points = Sequence[tuple[float, float, float]]
@@ -28,7 +28,7 @@ class PathPair:
     """The paths of two runs with the same parameters and seed.
 
     Attributes:
-        seed: the seed.
+        seed: the seed of both runs.
         old: the path of the old version.
         new: the path of the new version.
         distance: the largest distance between both robots at the same time, in m.
@@ -70,12 +70,12 @@ class PathComparison:
 
     @cached_property
     def typical(self) -> PathPair:
-        """The pair with the median of the distances; with an even number of pairs, with the lower one of the two."""
+        """The pair with the median distance; for an even number of pairs, the lower of the two middle pairs."""
         return sorted(self.pairs, key=lambda pair: pair.distance)[(len(self.pairs) - 1) // 2]
 
     @cached_property
     def shown(self) -> Sequence[PathPair]:
-        """The pairs in reports: all, or of many the first ones, the typical and the farthest one."""
+        """The pairs in reports: all, or of many the first pairs, the typical and the farthest pair."""
         marked = {id(self.typical), id(self.farthest)}
         first = {id(pair) for pair in self.pairs[:_MAX_PAIRS]}
         return [pair for pair in self.pairs if id(pair) in first | marked]
@@ -94,7 +94,7 @@ def read_paths(file: Path) -> dict[str, dict[str, Array]]:
     }
 
 
-def path_pair(seed: str, old: Array, new: Array) -> PathPair:
+def compare_paths(seed: str, old: Array, new: Array) -> PathPair:
     """Compare two paths over the time that both cover.
 
     Args:
@@ -107,38 +107,38 @@ def path_pair(seed: str, old: Array, new: Array) -> PathPair:
     times = times[(times >= start) & (times <= end)]
     if not len(times):
         times = np.array([start])
-    old_places, new_places = (_positions(path, times) for path in (old, new))
+    old_places, new_places = (_positions_at(path, times) for path in (old, new))
     distances = np.linalg.norm(old_places - new_places, axis=1)
     index = int(distances.argmax())
-    ends = (_point(old_places[index]), _point(new_places[index]))
-    return PathPair(seed, _thinned(old), _thinned(new), float(distances[index]), float(times[index]), ends)
+    ends = (_round_point(old_places[index]), _round_point(new_places[index]))
+    return PathPair(seed, _thin_out(old), _thin_out(new), float(distances[index]), float(times[index]), ends)
 
 
-def differing_paths(
+def find_differing_paths(
     groups: Mapping[tuple[str, str], Sequence[tuple[str, Array, Array]]],
 ) -> list[PathComparison]:
-    """Return the comparisons in which paths differ, those with the largest distances first.
+    """Return the comparisons of paths that differ, the largest distances first.
 
     Args:
-        groups: for each name of a path and each text of parameters, the seeds with the old and the new path.
+        groups: the seeds with the old and new paths, by the name of the path and the text of the parameters.
     """
     comparisons = [
-        PathComparison(name, parameters, [path_pair(*runs) for runs in group])
+        PathComparison(name, parameters, [compare_paths(*runs) for runs in group])
         for (name, parameters), group in groups.items()
     ]
     differing = [comparison for comparison in comparisons if comparison.farthest.distance > _TOLERANCE]
     return sorted(differing, key=lambda comparison: -comparison.farthest.distance)
 
 
-def _positions(path: Array, times: Array) -> Array:
+def _positions_at(path: Array, times: Array) -> Array:
     """Return the positions at some times, shape (times, 2)."""
     return np.column_stack([np.interp(times, path[:, 0], path[:, axis]) for axis in (1, 2)])
 
 
-def _thinned(path: Array) -> Points:
+def _thin_out(path: Array) -> Points:
     indexes = np.unique(np.linspace(0, len(path) - 1, min(len(path), _MAX_POINTS)).round().astype(int))
     return [(float(row[0]), float(row[1]), float(row[2])) for row in path[indexes]]
 
 
-def _point(place: Array) -> tuple[float, float]:
+def _round_point(place: Array) -> tuple[float, float]:
     return float(place[0]), float(place[1])

@@ -1,4 +1,4 @@
-"""The plugins of simulators in added and removed elements, with the topics that other programs use."""
+"""Read the simulator plugins in added and removed elements, with the topics that other programs use."""
 
 from __future__ import annotations
 
@@ -22,37 +22,37 @@ _DEFAULT_TOPICS = {
     "gazebo_ros_p3d": {"odom": "odom|topic"},
     "gazebo_ros_joint_state_publisher": {"joint_states": "joint_states|topic"},
 }
-"""By plugin: the default topics, and a pattern for the parameters and remappings that give others."""
+"""The default topics by plugin, and a pattern for the parameters and remappings that replace them."""
 _TOPIC_TAGS = re.compile(r"topic", re.IGNORECASE)
-_PARTS = ("plugin", "sensor")
+_PART_TAGS = ("plugin", "sensor")
 _MAX_VALUES = 12
-"""The number of values of a plugin, sensor or another element that a line shows."""
+"""The maximum number of values of a plugin, sensor or other element in a line."""
 _FILE = re.compile(r"(lib)?(?P<name>.+?)(\.so)?")
 
 
 def plugins_of(element: Element) -> list[Element]:
-    """Return the plugins that an element contains, or the element itself if it is one."""
+    """Return the plugins inside an element, or the element itself if it is a plugin."""
     if element.tag == "plugin":
         return [element]
     return [plugin for child in element.elements() for plugin in plugins_of(child)]
 
 
 def plugin_name(plugin: Element) -> str:
-    """Return the name of a plugin, or else its file, or the class of hardware."""
+    """Return the name of a plugin, or else its file, or the class of a hardware plugin."""
     file = PurePosixPath(plugin.attributes.get("filename", "")).name
     return plugin.attributes.get("name") or file or plugin.text().strip()
 
 
 def plugin_topics(plugin: Element) -> list[str]:
-    """Return the topics that a plugin names, and the default topics of a known one."""
-    parameters = list(_parameters(plugin))
+    """Return the topics that a plugin names, and the default topics of a known plugin."""
+    parameters = list(_plugin_parameters(plugin))
     topics = [used_name(value) for tag, value in parameters if _TOPIC_TAGS.search(tag) or tag == "remapping"]
     return list(dict.fromkeys([*topics, *_default_topics(plugin)]))
 
 
 def _default_topics(plugin: Element) -> list[str]:
-    """Return the default topics of a known plugin that it does not replace."""
-    parameters, topics = list(_parameters(plugin)), []
+    """Return the default topics of a known plugin that its parameters do not replace."""
+    parameters, topics = list(_plugin_parameters(plugin)), []
     match = _FILE.fullmatch(PurePosixPath(plugin.attributes.get("filename", "")).name)
     for topic, pattern in _DEFAULT_TOPICS.get(match["name"] if match else "", {}).items():
         is_replaced = re.compile(pattern, re.IGNORECASE)
@@ -71,23 +71,23 @@ def sensor_topics(element: Element) -> list[str]:
     return [*own, *(topic for child in element.elements() for topic in sensor_topics(child))]
 
 
-def _parameters(plugin: Element) -> Iterator[tuple[str, str]]:
+def _plugin_parameters(plugin: Element) -> Iterator[tuple[str, str]]:
     for child in plugin.elements():
         text = " ".join(child.text().split())
         if text and NAME_TAGS.search(child.tag):
             yield child.tag, text
-        yield from _parameters(child)
+        yield from _plugin_parameters(child)
 
 
 def contents_text(element: Element) -> Phrase | None:
-    """Return the values of a plugin or sensor, or the plugins and sensors in another element with theirs, or None.
+    """Return the values of a plugin or sensor, or the plugins and sensors inside another element; None if empty.
 
-    A plugin also has the default topics of a known one.
+    The result includes the default topics of a known plugin.
     """
-    if element.tag in _PARTS or not any(child.tag in _PARTS and child.attributes for child in element.walk()):
+    if element.tag in _PART_TAGS or not any(child.tag in _PART_TAGS and child.attributes for child in element.walk()):
         texts = [values_text(element, _MAX_VALUES), _default_topics_text(element)]
         return joined(list(filter(None, texts))) if any(texts) else None
-    texts = [*plugin_parts(element, _MAX_VALUES), values_text(element, _MAX_VALUES, _PARTS)]
+    texts = [*plugin_parts(element, _MAX_VALUES), values_text(element, _MAX_VALUES, _PART_TAGS)]
     return joined(list(filter(None, texts)))
 
 
@@ -95,15 +95,15 @@ def plugin_parts(element: Element, limit: int) -> list[Phrase]:
     """Return the plugins and sensors in an element with their values.
 
     Args:
-        element: the element.
-        limit: the number of values of each of them that are shown.
+        element: the XML element.
+        limit: the maximum number of values to show for each plugin or sensor.
     """
     parts: list[Phrase] = []
     for child in element.elements():
-        if child.tag in _PARTS and child.attributes:
+        if child.tag in _PART_TAGS and child.attributes:
             attributes = {name: value for name, value in child.attributes.items() if name != "name"}
             texts: list[Phrase | None] = [as_phrase(f"{name}={value}") for name, value in attributes.items()]
-            texts += [values_text(child, limit, _PARTS), _default_topics_text(child)]
+            texts += [values_text(child, limit, _PART_TAGS), _default_topics_text(child)]
             title = phrase("plugin '{name}'", name=plugin_name(child))
             if child.tag == "sensor":
                 title = phrase("sensor '{name}'", name=child.attributes.get("name", ""))
@@ -135,7 +135,7 @@ def is_removed(difference: Difference) -> bool:
 
 
 def added_topics(differences: Iterable[Difference]) -> frozenset[str]:
-    """Return the topics of the plugins and sensors that a new version adds, and those in changed values of plugins."""
+    """Return the topics that the new version adds: in added plugins and sensors, and in changed values of plugins."""
     topics: set[str] = set()
     for difference in differences:
         if is_removed(difference):
@@ -148,17 +148,17 @@ def added_topics(differences: Iterable[Difference]) -> frozenset[str]:
 
 
 def _names_in(element: Element) -> Iterator[str]:
-    """Yield the names in the parameters of a plugin that an element is, or contains."""
+    """Yield the names in the parameters of the plugins in an element."""
     text = " ".join(element.text().split())
     own = [(element.tag, text)] if text and NAME_TAGS.search(element.tag) else []
-    yield from (used_name(value) for _, value in (*own, *_parameters(element)))
+    yield from (used_name(value) for _, value in (*own, *_plugin_parameters(element)))
 
 
 def is_still_offered(difference: Difference, added: frozenset[str]) -> bool:
-    """Return whether another value of the new version has the name that a value of a plugin had.
+    """Return whether another value of the new version contains the old name in a plugin.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         added: the names that the new version adds; see `added_topics`.
     """
     if difference.subject != "extension" or difference.kind != "changed" or not difference.old:
@@ -169,10 +169,10 @@ def is_still_offered(difference: Difference, added: frozenset[str]) -> bool:
 
 
 def missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
-    """Return why it is breaking that an element is removed or replaced: topics that others use are missing.
+    """Return the reason why removing or replacing an element is breaking, or None. Its topics may be missing.
 
     Args:
-        difference: the difference.
+        difference: the difference between both versions.
         added: the topics that other elements of the new version offer.
     """
     element = difference.element if is_removed(difference) else getattr(difference, "old_plugin", None)

@@ -1,4 +1,4 @@
-"""A quantity of a whole robot or model, in two versions."""
+"""Compare a quantity of a whole robot or model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.review.changes import Figure
 _RELATIVE_TOLERANCE = 1e-4
 """The maximum relative difference of equal quantities."""
 _DIGITS = range(4, 8)
-"""The numbers of digits of a quantity: the first with which both versions differ."""
+"""The numbers of digits to try for a quantity, until both versions differ."""
 _LENGTH_TOLERANCE = 1e-4
 """The maximum difference in m of equal lengths."""
 
@@ -24,6 +24,8 @@ def figure_of(name: Phrase, unit: str, old: object, new: object) -> Iterator[Fig
     values = np.atleast_1d(np.asarray(old, float)), np.atleast_1d(np.asarray(new, float))
     tolerance = _LENGTH_TOLERANCE if unit == "m" else 0.0
     if not np.allclose(*values, rtol=_RELATIVE_TOLERANCE, atol=tolerance):
-        texts = [tuple(" x ".join(f"{each:.{digits}g}" for each in value) for value in values) for digits in _DIGITS]
+        texts = [
+            tuple(" x ".join(f"{number:.{digits}g}" for number in value) for value in values) for digits in _DIGITS
+        ]
         old_text, new_text = next((pair for pair in texts if pair[0] != pair[1]), texts[-1])
         yield Figure(name, old_text, new_text, unit)

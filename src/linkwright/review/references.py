@@ -1,4 +1,4 @@
-"""Find paths in launch files to files that the new version lacks, and options that its scripts do not accept."""
+"""Find paths to missing files and refused script options in launch files."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.launches.script_options import refused_options
+from linkwright.review.launches.script_options import find_refused_options
 from linkwright.review.versions import Versions
 
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
 _SHARED_PATH = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\s*\)/([\w./+-]+)")
 
 
-def lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the launch files of the new version that name what it does not have, each with a change.
+def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the launch files of the new version with paths to missing files or refused options, each with a change.
 
-    These are files that only the old version has, and options that a script does not accept.
+    A missing file exists only in the old version. A script does not accept a refused option.
     """
-    yield from refused_options(versions, changed_files)
+    yield from find_refused_options(versions, changed_files)
     lost = {file.old_path for file in changed_files if file.old_path and file.old_path != file.new_path}
     names = {PurePosixPath(path).name for path in lost}
     if not names:
@@ -33,11 +33,11 @@ def lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) ->
             continue
         for package, subpath, span in _shared_paths(SourceText(str(file), text), path):
             if _is_lost(versions, path, package, subpath, lost):
-                yield path, _change(path, package, subpath, span)
+                yield path, _make_change(path, package, subpath, span)
 
 
 def _shared_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:
-    """Yield the paths in share folders that a launch file names: package, path in its folder, and location."""
+    """Yield the paths in share folders that a launch file names: package, path in the package, and location."""
     if path.endswith(".py"):
         for item in read_launch_file(source, path).paths:
             yield item.package, item.path, item.span
@@ -58,7 +58,7 @@ def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Co
     return versions.old.relative(old_share / subpath) in lost
 
 
-def _change(path: str, package: str, subpath: str, span: Span) -> Change:
+def _make_change(path: str, package: str, subpath: str, span: Span) -> Change:
     text = phrase("names '{file}' of '{package}', which does not exist any more", file=subpath, package=package)
     reason = phrase("the launch file does not find the file")
     return Change(text, Effect.BREAKING, reason, Location(path, span.line, span.column))

@@ -1,4 +1,4 @@
-"""Renamed and moved folders, as one change instead of one for each file in them."""
+"""Report renamed and moved folders as one change instead of one change for each file."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, PathChange, Sub
 from linkwright.review.versions import Versions
 
 _MIN_FILES = 3
-"""The number of files of a folder from which they are one line."""
+"""The minimum number of files of a folder that are merged into one line."""
 _Folders = tuple[str, str]
 """The old and the new path of a folder."""
 
 
-def with_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> list[Subject]:
-    """Return subjects with one for several files that are renamed because a folder above them is another one.
+def merge_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> list[Subject]:
+    """Return the subjects, with the files of a renamed folder merged into one subject.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         subjects: all compared files.
     """
     groups: dict[_Folders, list[Subject]] = {}
     for subject in subjects:
-        folders = _folders(subject)
+        folders = _renamed_folder(subject)
         if folders is not None:
             groups.setdefault(folders, []).append(subject)
     result = list(subjects)
@@ -34,13 +34,15 @@ def with_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> lis
             continue
         for subject in group:
             others = [change for change in subject.changes if change.path_change is not PathChange.RENAMED]
-            result[next(i for i, each in enumerate(result) if each is subject)] = replace(subject, changes=others)
-        result.append(_folder(versions, folders, group))
+            result[next(i for i, candidate in enumerate(result) if candidate is subject)] = replace(
+                subject, changes=others
+            )
+        result.append(_folder_subject(versions, folders, group))
     return sorted(result, key=lambda subject: subject.path)
 
 
-def _folders(subject: Subject) -> _Folders | None:
-    """Return the paths of the outermost folder that differs in the paths of a file; None if the name differs, too."""
+def _renamed_folder(subject: Subject) -> _Folders | None:
+    """Return the old and new paths of the outermost renamed folder of a file; None if its name changed, too."""
     is_renamed = any(change.path_change is PathChange.RENAMED for change in subject.changes)
     if not is_renamed or subject.old_path is None or subject.new_path is None or subject.kind is SubjectKind.MESH:
         return None
@@ -53,7 +55,7 @@ def _folders(subject: Subject) -> _Folders | None:
     return "/".join(old[: len(old) - common]), "/".join(new[: len(new) - common])
 
 
-def _folder(versions: Versions, folders: _Folders, group: Sequence[Subject]) -> Subject:
+def _folder_subject(versions: Versions, folders: _Folders, group: Sequence[Subject]) -> Subject:
     old, new = (f"{folder or '.'}/" for folder in folders)
     is_breaking = any(
         change.effect is Effect.BREAKING

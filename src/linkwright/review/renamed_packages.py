@@ -1,4 +1,4 @@
-"""Packages with a new name or folder, and the changes that follow from this alone."""
+"""Find packages with a new name or folder, and remove the changes that only follow from it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.review.merging import name_edit
 from linkwright.review.versions import Versions
 
 _NAMED_AFTER_PACKAGES = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.PLUGINS)
-"""The kinds of files in which a name that contains the package's name is derived from it."""
+"""The kinds of files in which names that contain the package name are derived from it."""
 _REFERENCE = (
     r"(?P<before>\$\(find(?:-pkg-share|-pkg-prefix)? |(?:package|model)://|\b(?:share|lib)/|\bnode '|"
     r"\b(?:get_package_\w+|FindPackageShare)\((?:package=)?['\"])(?P<name>{names})(?![\w.-])|"
@@ -27,7 +27,7 @@ _RENAMED = "package '{old}' renamed to '{new}'"
 
 @dataclass(frozen=True)
 class RenamedPackage:
-    """A package that has another name, or is in another folder, in the new version.
+    """A package with a new name or in a new folder.
 
     Attributes:
         old_name: the old name.
@@ -42,14 +42,14 @@ class RenamedPackage:
     new_folder: str
 
     def new_path(self, old_path: str) -> str | None:
-        """Return the path of a file that moves with the package; None for a file outside it, or if none moves."""
+        """Return the new path of a file that moves with the package; None for other files."""
         path = PurePosixPath(old_path)
         if self.old_folder == self.new_folder or not path.is_relative_to(self.old_folder):
             return None
         return (PurePosixPath(self.new_folder) / path.relative_to(self.old_folder)).as_posix()
 
 
-def renamed_packages(versions: Versions) -> list[RenamedPackage]:
+def find_renamed_packages(versions: Versions) -> list[RenamedPackage]:
     """Return the packages with a new name or folder whose manifests git recognizes as renamed or changed."""
     found = []
     for file in versions.changed_files:
@@ -64,9 +64,9 @@ def renamed_packages(versions: Versions) -> list[RenamedPackage]:
     return found
 
 
-def with_moved_files(versions: Versions) -> Versions:
-    """Return versions in which files of moved packages are the same, also those that git does not recognize."""
-    packages = renamed_packages(versions)
+def match_moved_files(versions: Versions) -> Versions:
+    """Return versions that match the files of moved packages, even where git does not recognize them."""
+    packages = find_renamed_packages(versions)
     added = {file.new_path: file for file in versions.changed_files if file.old_path is None}
     moved: dict[str, ChangedFile] = {}
     for file in versions.changed_files:
@@ -83,11 +83,13 @@ class PackageNames:
     """The names of renamed packages in texts of the old version.
 
     Args:
-        packages: the packages.
+        packages: the renamed packages.
     """
 
     def __init__(self, packages: Sequence[RenamedPackage]) -> None:
-        self._names = {each.old_name: each.new_name for each in packages if each.old_name != each.new_name}
+        self._names = {
+            package.old_name: package.new_name for package in packages if package.old_name != package.new_name
+        }
         names = "|".join(re.escape(name) for name in sorted(self._names, key=len, reverse=True)) or "(?!)"
         self._derived = re.compile(rf"(?<![A-Za-z0-9])(?:{names})(?![A-Za-z0-9])")
         self._edits = {name_edit(old, new) for old, new in self._names.items()}
@@ -97,16 +99,16 @@ class PackageNames:
         """Return the new name of a package."""
         return self._names.get(name, name)
 
-    def derived(self, text: str) -> str:
-        """Return a text in which names that are derived from those of the packages have the new ones."""
+    def rename_derived(self, text: str) -> str:
+        """Return a text with new names in place of names derived from the old package names."""
         return self._derived.sub(lambda match: self._names[match[0]], text)
 
     def has_same_edit(self, old: str, new: str) -> bool:
-        """Return whether a name differs from another one as the new name of a package differs from its old one."""
+        """Return whether two names differ by the same edit as the old and new names of a package."""
         return name_edit(old, new) in self._edits
 
     def with_references(self, text: str) -> str:
-        """Return a text in which paths, URIs and scopes of C++ that begin with a package have the new name."""
+        """Return a text with the new package name in paths, URIs and C++ scopes that begin with it."""
         return self._references.sub(
             lambda match: (match["before"] or "") + self._names[match["name"] or match["scope"]], text
         )
@@ -114,12 +116,12 @@ class PackageNames:
 
 @dataclass(frozen=True)
 class _Consequences:
-    """The changes that follow from new names and folders of packages.
+    """The changes that only follow from new names and folders of packages.
 
     Attributes:
-        packages: the packages.
-        names: their names.
-        classes: the new names of classes that plugin descriptions declare, by the old ones.
+        packages: the renamed packages.
+        names: the names of the packages.
+        classes: the new names of classes in plugin descriptions, by old name.
     """
 
     packages: Sequence[RenamedPackage]
@@ -127,8 +129,8 @@ class _Consequences:
     classes: dict[str, str]
 
     def contain(self, change: Change, subject: Subject) -> bool:
-        """Return whether a change of a file follows from a new name or folder alone."""
-        arguments = _innermost(change.sentence).arguments
+        """Return whether a change of a file only follows from a new name or folder."""
+        arguments = _innermost_sentence(change.sentence).arguments
         if change.sentence.template == _RENAMED:
             return False
         old_path = subject.old_path
@@ -143,15 +145,15 @@ class _Consequences:
     def _new_text(self, text: str, kind: SubjectKind) -> str:
         if text in self.classes:
             return self.classes[text]
-        return self.names.derived(text) if kind in _NAMED_AFTER_PACKAGES else self.names.with_references(text)
+        return self.names.rename_derived(text) if kind in _NAMED_AFTER_PACKAGES else self.names.with_references(text)
 
 
-def without_consequences(versions: Versions, subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
-    """Return subjects without the changes that follow from new names and folders of packages, and a note about them.
+def remove_consequences(versions: Versions, subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
+    """Return the subjects without changes that only follow from renamed packages, and notes about these changes.
 
-    The change of the manifest has the names of libraries, classes and other things that changed with the package's.
+    The change of the manifest lists the names of libraries, classes and other things that changed with the package.
     """
-    packages = renamed_packages(versions)
+    packages = find_renamed_packages(versions)
     if not packages:
         return list(subjects), []
     names = PackageNames(packages)
@@ -162,7 +164,7 @@ def without_consequences(versions: Versions, subjects: Sequence[Subject]) -> tup
         for change in subject.changes
         if change.sentence.arguments.keys() == {"old", "new"}
     }
-    classes = {old: new for old, new in renamed_classes.items() if names.derived(old) == new}
+    classes = {old: new for old, new in renamed_classes.items() if names.rename_derived(old) == new}
     consequences = _Consequences(packages, names, classes)
     manifests = {f"{package.new_folder}/{MANIFEST}".lstrip("/"): package for package in packages}
     count = 0
@@ -190,7 +192,7 @@ def without_consequences(versions: Versions, subjects: Sequence[Subject]) -> tup
     return [_with_derived_names(subject, manifests, derived) for subject in result], [note]
 
 
-def _innermost(sentence: Phrase) -> Phrase:
+def _innermost_sentence(sentence: Phrase) -> Phrase:
     while isinstance(change := sentence.arguments.get("change"), Phrase):
         sentence = change
     return sentence
@@ -207,12 +209,12 @@ def _with_new_folder(package: RenamedPackage, changes: Sequence[Change]) -> list
 def _with_derived_names(
     subject: Subject, manifests: dict[str, RenamedPackage], derived: Sequence[tuple[str, str]]
 ) -> Subject:
-    """Return a subject; the change of a package's name in a manifest has the names that are derived from it."""
+    """Return a subject. The change of the name of a package in a manifest lists the names derived from it."""
     package = manifests.get(subject.path)
     if package is None or package.old_name == package.new_name:
         return subject
     own = PackageNames([package])
-    names = tuple(dict.fromkeys(f"{old} -> {new}" for old, new in derived if own.derived(old) == new))
+    names = tuple(dict.fromkeys(f"{old} -> {new}" for old, new in derived if own.rename_derived(old) == new))
     changes = [
         replace(change, other_names=names) if change.sentence.template == _RENAMED else change
         for change in subject.changes
@@ -221,11 +223,11 @@ def _with_derived_names(
 
 
 def moved_files(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
-    """Yield the new paths of files that move with their packages, each with the old folder of the package."""
-    packages = renamed_packages(versions)
+    """Yield the new paths of files that move with their package, each with the old folder of the package."""
+    packages = find_renamed_packages(versions)
     names = PackageNames(packages)
     for file in files:
         for package in packages:
             path = package.new_path(file.old_path) if file.old_path else None
-            if path is not None and file.new_path in (path, names.derived(path)):
+            if path is not None and file.new_path in (path, names.rename_derived(path)):
                 yield file.path, package.old_folder

@@ -1,4 +1,4 @@
-"""Plugins of simulators that replace another one, such as the drive of another version of Gazebo."""
+"""Find simulator plugins that replace another plugin, such as the drive of another version of Gazebo."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linkwright.xmltree import Element
 _FILE_ROLE = re.compile(
     r"(lib)?((gazebo|gz|ignition|ign)[-_])?((sim|gazebo)[-_])?(ros2?[-_])?(?P<role>.+?)([-_](system|plugin))*(\.so)?"
 )
-"""The name of a file without what tells only the version of the simulator."""
+"""A file name, with the role of the plugin between the parts about the simulator."""
 _SEPARATORS = re.compile(r"[\W_]+")
 _MIN_ROLE = 3
 """The minimum number of characters of a role."""
@@ -25,7 +25,7 @@ _MIN_ROLE = 3
 
 @dataclass(frozen=True, slots=True)
 class PluginReplacement(Difference):
-    """A plugin that replaces another one.
+    """A plugin that replaces another plugin.
 
     Attributes:
         old_plugin: the old plugin.
@@ -38,43 +38,54 @@ class PluginReplacement(Difference):
     @property
     def text(self) -> Phrase:
         """Both plugins with their values."""
-        old, new = (_described(plugin) for plugin in (self.old_plugin, self.new_plugin) if plugin is not None)
+        old, new = (_plugin_text(plugin) for plugin in (self.old_plugin, self.new_plugin) if plugin is not None)
         return phrase("{old} replaced by {new}", old=old, new=new)
 
 
-def _described(plugin: Element) -> Phrase:
+def _plugin_text(plugin: Element) -> Phrase:
     title = phrase("plugin '{name}'", name=plugin_name(plugin))
     items = list(filter(None, [as_phrase(own_content(plugin)), contents_text(plugin)]))
     return phrase("{entry} ({items})", entry=title, items=joined(items)) if items else title
 
 
-def with_replaced_plugins(differences: Iterable[Difference]) -> list[Difference]:
-    """Return differences in which a removed and an added plugin of the same name, file or role are one."""
+def merge_replaced_plugins(differences: Iterable[Difference]) -> list[Difference]:
+    """Return the differences, with removed and added plugins of the same name, file or role as replacements."""
     result = list(differences)
-    come = [(each, plugin) for each in result if is_added(each) and (plugin := _only_plugin(each)) is not None]
+    candidates = [
+        (candidate, plugin)
+        for candidate in result
+        if is_added(candidate) and (plugin := _only_plugin(candidate)) is not None
+    ]
     for difference in tuple(result):
         old_plugin = _only_plugin(difference) if is_removed(difference) else None
-        match = None if old_plugin is None else _replacement(old_plugin, [plugin for _, plugin in come])
+        match = None if old_plugin is None else _replacement_index(old_plugin, [plugin for _, plugin in candidates])
         if old_plugin is None or match is None:
             continue
-        added, new_plugin = come.pop(match)
+        added, new_plugin = candidates.pop(match)
         names = plugin_name(old_plugin), plugin_name(new_plugin)
         places = difference.old_place, added.new_place
-        index = next(index for index, each in enumerate(result) if each is added)
+        index = next(index for index, candidate in enumerate(result) if candidate is added)
         result[index] = PluginReplacement(
             added.subject, added.name, "changed", added.property, *names, "", *places, None, old_plugin, new_plugin
         )
-        result = [each for each in result if each is not difference]
+        result = [candidate for candidate in result if candidate is not difference]
     return result
 
 
-def _replacement(plugin: Element, others: Sequence[Element]) -> int | None:
-    """Return the number of the plugin that replaces another one, or None if there is none."""
-    return next((index for index, other in enumerate(others) if not _keys(plugin).isdisjoint(_keys(other))), None)
+def _replacement_index(plugin: Element, others: Sequence[Element]) -> int | None:
+    """Return the index of the plugin that replaces a removed plugin, or None if there is none."""
+    return next(
+        (
+            index
+            for index, other in enumerate(others)
+            if not _replacement_keys(plugin).isdisjoint(_replacement_keys(other))
+        ),
+        None,
+    )
 
 
 def _only_plugin(difference: Difference) -> Element | None:
-    """Return the plugin of an added or removed element that contains nothing else, or None for another element."""
+    """Return the plugin in an added or removed element without other contents, or None for other elements."""
     if difference.element is None:
         return None
     plugins = [plugin for plugin in plugins_of(difference.element) if plugin.attributes]
@@ -83,12 +94,12 @@ def _only_plugin(difference: Difference) -> Element | None:
     return plugins[0] if is_alone and len(plugins) == 1 else None
 
 
-def _keys(plugin: Element) -> set[str]:
-    """Return the name and the roles of a plugin, which are equal in a plugin that replaces it."""
-    return {f"name {plugin_name(plugin)}", *(f"role {role}" for role in _roles(plugin))}
+def _replacement_keys(plugin: Element) -> set[str]:
+    """Return the name and the roles of a plugin. A plugin that replaces it shares one of them."""
+    return {f"name {plugin_name(plugin)}", *(f"role {role}" for role in _plugin_roles(plugin))}
 
 
-def _roles(plugin: Element) -> Iterator[str]:
+def _plugin_roles(plugin: Element) -> Iterator[str]:
     match = _FILE_ROLE.fullmatch(PurePosixPath(plugin.attributes.get("filename", "")).name)
     class_name = plugin.attributes.get("name", "").rpartition("::")
     for text in (match["role"] if match else "", class_name[2] if class_name[1] else ""):

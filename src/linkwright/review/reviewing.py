@@ -1,4 +1,4 @@
-"""A review: which files a range of commits affects, and what differs in each of them."""
+"""Review a range of commits: find the affected files, and compare both versions of each."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from linkwright.review.drawings.scene_images import lone_world_images
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import is_map, map_of_image
-from linkwright.review.files.mesh_groups import grouped_meshes
+from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
 from linkwright.review.files.templates import is_template
-from linkwright.review.findings import compare_findings, find
+from linkwright.review.findings import compare_findings, find_findings
 from linkwright.review.folders import review_without_folder
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import (
@@ -50,17 +50,17 @@ from linkwright.review.kinds import (
     rule_of,
     rule_of_contents,
 )
-from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, with_other_formats
+from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import makes_actions
-from linkwright.review.lost_controllers import lost_controllers
-from linkwright.review.lost_data import lost_data
-from linkwright.review.lost_files import lost_files
+from linkwright.review.lost_controllers import find_lost_controllers
+from linkwright.review.lost_data import find_lost_data
+from linkwright.review.lost_files import find_lost_files
 from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
-from linkwright.review.references import lost_references
-from linkwright.review.renamed_folders import with_renamed_folders
-from linkwright.review.renamed_packages import with_moved_files, without_consequences
+from linkwright.review.references import find_lost_references
+from linkwright.review.renamed_folders import merge_renamed_folders
+from linkwright.review.renamed_packages import match_moved_files, remove_consequences
 from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.robots.semantics import semantic_files
 from linkwright.review.sources.callers import broken_callers
@@ -70,12 +70,12 @@ from linkwright.review.versions import Version, Versions
 _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _MIN_EXPANDED = 4
-"""The minimum number of descriptions for which several processes are used."""
+"""The minimum number of descriptions that are compared by several processes."""
 _LISTED = (
     *(SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS),
     SubjectKind.DEPENDENCIES,
 )
-"""The kinds whose changed files are listed with the other files if no difference is found, as are templates of SDF."""
+"""The kinds whose files are listed with the other files if no difference is found, as are SDF templates."""
 _EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
 
@@ -93,18 +93,18 @@ def review(
     """Compare two versions of a repository.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         packages: the names or folders of the packages to which the review is limited; empty for all files.
         workers: the number of parallel processes.
-        scenarios: scenarios to run in both versions, relative to the root. Their code, and that of the packages, runs.
-        seeds: the number of seeds of scenarios; None for their own.
-        with_images: whether to make images of robots that look different.
-        with_scenes: whether to also make 3D scenes of them.
+        scenarios: scenarios to run in both versions, relative to the root. They run code of the repository.
+        seeds: the number of seeds of scenarios; None for the number in each scenario.
+        with_images: whether to render images of robots that look different.
+        with_scenes: whether to build 3D scenes of robots that look different.
 
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
-    versions = with_moved_files(versions)
+    versions = match_moved_files(versions)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
     result = _Reviewer(versions, _package_folders(versions, packages), drawings).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
@@ -123,26 +123,26 @@ class _Reviewer:
         self._versions = versions
         self._drawings = drawings
         self._folders = folders
-        changed_files = with_other_formats(versions.changed_files)
+        changed_files = join_format_changes(versions.changed_files)
         self._changed_files = [file for file in changed_files if self._is_in_scope(file.path)]
         self._new_paths = {
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
         }
-        self._maps = dict(_maps_of_images(versions, self._changed_files))
+        self._maps = dict(_find_maps_of_images(versions, self._changed_files))
 
     @cached_property
-    def _targets(self) -> dict[bool, set[str]]:
-        """The paths of the complete descriptions and worlds, by whether the version is the old one."""
+    def _complete_paths(self) -> dict[bool, set[str]]:
+        """The paths of the complete descriptions and worlds by whether they are from the old version."""
         versions = (self._versions.old, self._versions.new)
-        return {version.is_old: _targets(version) | self._plain_robots(version) for version in versions}
+        return {version.is_old: _find_targets(version) | self._plain_robots(version) for version in versions}
 
     def run(self, workers: int) -> Review:
         pairs = list(self._pairs())
         expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED]
-        with _processes(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
+        with _process_pool(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
             subjects = [submit(_compare, self._versions, *pair, self._drawings) for pair in pairs]
             findings = [
-                submit(find, version, self._check_targets(version, expanded))
+                submit(find_findings, version, self._check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
             ]
             old_findings, new_findings = (result() for result in findings)
@@ -151,9 +151,9 @@ class _Reviewer:
         moved = {subject.path: subject.changes[0].sentence for subject in all_subjects if _is_only_moved(subject)}
         all_subjects = [subject for subject in all_subjects if subject.path not in moved]
         reported = _reported_paths(all_subjects)
-        all_subjects, notes = without_consequences(self._versions, all_subjects)
+        all_subjects, notes = remove_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
-        all_subjects = with_renamed_folders(self._versions, all_subjects)
+        all_subjects = merge_renamed_folders(self._versions, all_subjects)
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         compared = {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
         reported |= {path for path in compared if not is_template(path)}
@@ -164,7 +164,7 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            grouped_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
+            group_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
             [file.path for file in other_files],
             {**file_states(self._versions, other_files), **moved},
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
@@ -172,12 +172,12 @@ class _Reviewer:
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
-        """Return the subjects with broken paths, and with the subjects of plugin descriptions and sources."""
+        """Return the subjects, with changes about broken paths, and subjects for plugin descriptions and sources."""
         lost: dict[str, list[Change]] = {}
-        for path, change in lost_references(self._versions, self._changed_files):
+        for path, change in find_lost_references(self._versions, self._changed_files):
             lost.setdefault(path, []).append(change)
         result = [replace(subject, changes=[*subject.changes, *lost.pop(subject.path, ())]) for subject in subjects]
-        result = _with_changes(result, lost_files(self._versions, self._changed_files))
+        result = _with_changes(result, find_lost_files(self._versions, self._changed_files))
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
         result += plugin_subjects(self._versions, self._changed_files)
@@ -186,12 +186,12 @@ class _Reviewer:
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         result = _with_changes(result, broken_callers(self._versions, self._changed_files))
-        result = _with_changes(result, lost_controllers(self._versions, self._changed_files))
-        result = _with_changes(result, lost_data(self._versions, self._changed_files))
+        result = _with_changes(result, find_lost_controllers(self._versions, self._changed_files))
+        result = _with_changes(result, find_lost_data(self._versions, self._changed_files))
         return sorted(result, key=lambda subject: subject.path)
 
     def _removed_submodules(self) -> Iterator[Subject]:
-        """Yield the submodules that the new version does not have, with their packages."""
+        """Yield the removed submodules with their packages."""
         reason = phrase("packages that depend on the packages in it do not build or start")
         for file in self._changed_files:
             if self._is_removed_submodule(file):
@@ -199,18 +199,18 @@ class _Reviewer:
                 yield Subject(SubjectKind.MANIFEST, file.path, file.old_path, None, [change])
 
     def _is_removed_submodule(self, file: ChangedFile) -> bool:
-        """Return whether the new version has neither a submodule nor files at its path."""
+        """Return whether the new version has neither the submodule nor files at its path."""
         return file.is_submodule and file.new_path is None and not self._versions.new.file(file.path).is_dir()
 
     def _is_complete(self, path: str) -> bool:
-        """Return whether a path is that of a complete description or world in one of the versions."""
-        return any(path in targets for targets in self._targets.values())
+        """Return whether a path is a complete description or world in one of the versions."""
+        return any(path in targets for targets in self._complete_paths.values())
 
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
 
     def _plain_robots(self, version: Version) -> set[str]:
-        """Return the changed URDF files that programs can read as they are, although a xacro file includes them."""
+        """Return the changed URDF files that are valid without expansion although a xacro file includes them."""
         paths = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
         return {path for path in paths if path and is_plain_robot(version.file(path))}
 
@@ -222,7 +222,7 @@ class _Reviewer:
         paths: set[tuple[str | None, str | None]] = {(path, self._new_path(path)) for path in affected_old}
         paths |= {(self._old_path(path), path) for path in affected_new}
         for file in self._changed_files:
-            rule = self._rule(file.old_path, file.new_path)
+            rule = self._rule_for(file.old_path, file.new_path)
             if file.path in self._maps:
                 paths.add((self._old_path(self._maps[file.path]), self._new_path(self._maps[file.path])))
                 continue
@@ -231,12 +231,12 @@ class _Reviewer:
             if self._is_part_of_a_robot(rule, file):
                 paths.add(self._package_build_file(file) or (file.old_path, file.new_path))
         for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
-            rule = self._rule(old_path, new_path)
+            rule = self._rule_for(old_path, new_path)
             if rule is not None:
                 yield rule, old_path, new_path
 
-    def _rule(self, old_path: str | None, new_path: str | None) -> KindRule | None:
-        """Return the rule for a file, or None for a file that is not compared."""
+    def _rule_for(self, old_path: str | None, new_path: str | None) -> KindRule | None:
+        """Return the rule for a file, or None if the file is not compared."""
         path = new_path or old_path or ""
         rule = rule_of(path)
         sides = ((self._versions.old, old_path), (self._versions.new, new_path))
@@ -252,7 +252,7 @@ class _Reviewer:
         return rule
 
     def _package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
-        """Return the old and new path of the package's ``CMakeLists.txt`` if a file is another one in a subfolder."""
+        """Return both paths of the package's ``CMakeLists.txt`` for a file in a subfolder; None for other files."""
         path = PurePosixPath(file.path)
         folder = self._versions.new.package_of(file.path, (MANIFEST, ROSBUILD_MANIFEST))
         if path.name != CMAKE_FILE or folder is None:
@@ -285,7 +285,7 @@ class _Reviewer:
         files = None
         for version in (self._versions.old, self._versions.new):
             files = TextFiles(version.root, files, changed)
-            candidates = {path for path in self._targets[version.is_old] if self._is_in_scope(path)}
+            candidates = {path for path in self._complete_paths[version.is_old] if self._is_in_scope(path)}
             yield files.affected(changed, candidates)
 
     def _new_path(self, old_path: str) -> str | None:
@@ -347,11 +347,11 @@ def _compare(
     """Compare a file in both versions.
 
     Args:
-        versions: the versions.
+        versions: both versions of the repository.
         rule: the rule for the file.
         old_path: the path in the old version; None for an added file.
         new_path: the path in the new version; None for a removed file.
-        drawings: what to draw of robots that look different.
+        drawings: the kinds of drawings of robots that look different.
     """
     kind, path = rule.kind, new_path or old_path or ""
     effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
@@ -368,7 +368,7 @@ def _compare(
         return Subject(kind, path, old_path, new_path, [change, *changes], images=images)
     pair = FilePair(versions, old_path, new_path, drawings)
     if old_path != new_path:
-        pair.changes.append(_renaming(versions, rule, old_path, new_path))
+        pair.changes.append(_renaming_change(versions, rule, old_path, new_path))
     try:
         rule.compare(pair)
     except LinkwrightError as error:
@@ -392,7 +392,7 @@ def _compare(
     )
 
 
-def _renaming(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:
+def _renaming_change(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:
     """Return the change that reports a renamed or moved file."""
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
@@ -407,7 +407,7 @@ def _renaming(versions: Versions, rule: KindRule, old_path: str, new_path: str) 
 
 
 def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
-    """Return the line about an added or removed file, with its contents where they are known."""
+    """Return the line about an added or removed file, with its contents if they are known."""
     try:
         contents = None if rule.contents is None else rule.contents(version, path)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
@@ -418,7 +418,7 @@ def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: st
 def _lone_contents(
     version: Version, kind: SubjectKind, path: str, drawings: Drawings
 ) -> tuple[list[Change], list[ViewImages]]:
-    """Return the line about the robot of a description that only one version has, and images of this file."""
+    """Return the change about the contents of a file that only one version has, and images of it."""
     if kind is SubjectKind.WORLD:
         return [], lone_world_images(version, path) if drawings.images else []
     found = read_lone_robot(version, path) if kind is SubjectKind.DESCRIPTION else None
@@ -436,7 +436,7 @@ def _is_only_moved(subject: Subject) -> bool:
 
 
 def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
-    """Return subjects with more changes of files that need not have changed themselves."""
+    """Return the subjects with further changes. These may be about files that did not change themselves."""
     result = {subject.path: subject for subject in subjects}
     for path, change in changes:
         rule = rule_of(path)
@@ -446,15 +446,15 @@ def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Chan
 
 
 def _reported_paths(subjects: Sequence[Subject]) -> set[str]:
-    """Return the paths of subjects with changes, and of the files in which these are."""
+    """Return the paths of subjects with changes, and of the files that contain the changes."""
     changes = (change for subject in subjects for change in subject.changes)
     files = {change.location.file for change in changes if change.location is not None}
     return files | {subject.path for subject in subjects if not subject.is_empty}
 
 
 @contextmanager
-def _processes(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
-    """Yield a function that calls a function in one of several processes, and returns a function for the result."""
+def _process_pool(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
+    """Yield a function that submits a call to a pool of processes, and returns a function that waits for the result."""
     if count == 1:
         yield partial
         return
@@ -465,8 +465,8 @@ def _processes(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
         pool.shutdown(cancel_futures=True)
 
 
-def _maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
-    """Yield the paths of the changed images of maps, each with the path of the YAML file that describes the map."""
+def _find_maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
+    """Yield the paths of the changed map images, each with the path of the YAML file that describes the map."""
     for file in files:
         for version, path in ((versions.new, file.new_path), (versions.old, file.old_path)):
             map_path = None if path is None else map_of_image(version, path)
@@ -475,10 +475,10 @@ def _maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterato
                 break
 
 
-def _targets(version: Version) -> set[str]:
+def _find_targets(version: Version) -> set[str]:
     """Return the paths of the complete descriptions, semantic descriptions in xacro, and worlds of a version.
 
-    A robot that another description includes is complete if a launch file also starts it.
+    A robot that another description includes counts as complete if a launch file starts it, too.
     """
     checker = version.checker()
     started = [file for file in included_robots(version.root) if checker.calls(file, ())]

@@ -1,4 +1,4 @@
-"""The two versions of a repository that a review compares."""
+"""Open the two versions of a repository that a review compares."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, 
 from linkwright.packages.share_layout import share_of_sources
 
 TEST_FOLDERS = frozenset({"test", "tests"})
-"""The names of folders with tests, whose files do not belong to a robot."""
+"""The names of test folders, whose files do not belong to a robot."""
 _MAX_SEARCHED_BYTES = 1 << 20
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
 
@@ -104,7 +104,7 @@ class Version:
     def share_of(self, package: str, folder: Path) -> Path | None:
         """Return the share folder of a package of the version, or None if it has none with this name.
 
-        If there are several copies of the package, it is that of the copy that is nearest to a folder.
+        Of several copies of the package, the copy nearest to the folder is used.
 
         Args:
             package: the name of the package.
@@ -117,7 +117,7 @@ class Version:
         return Checker(folders=(self.root,), shares=self.shares)
 
     def model(self, path: str, values: Mapping[str, str]) -> Model:
-        """Return a description of this version with values of its arguments."""
+        """Return the model of a description in this version with values of its arguments."""
         file = self.file(path)
         return Model(file, values, self.finder(file.parent), self.commit)
 
@@ -129,7 +129,7 @@ class Version:
         return {name: share_of_sources(name, folder) for name, folder in SourceScan(self.root).packages().items()}
 
     def _nearest(self, folder: Path) -> dict[str, Path]:
-        """Return the share folders of the packages with several copies that are nearest to a folder."""
+        """Return the nearest share folder of each package that has several copies, by the name of the package."""
         return {
             name: share_of_sources(name, max(copies, key=lambda copy: _common_parts(copy, folder)))
             for name, copies in self._copies.items()
@@ -145,15 +145,15 @@ class Version:
                 folders.setdefault(name, []).append(folder)
         return {name: found for name, found in folders.items() if len(found) > 1}
 
-    def unlabeled(self, file: str) -> str:
-        """Return a file's path relative to the root, for its path or a name that `Model.display_name` returned."""
+    def path_of_label(self, file: str) -> str:
+        """Return the path of a file relative to the root, from a path or a name returned by `Model.display_name`."""
         prefix = "" if self.commit is None else f"{self.commit.name}:"
         if prefix and file.startswith(prefix):
             return file.removeprefix(prefix)
         return self.relative(file) or file
 
-    def labeled(self, finding: Diagnostic) -> Diagnostic:
-        """Return a finding in which files of the repository have paths relative to the root."""
+    def with_relative_paths(self, finding: Diagnostic) -> Diagnostic:
+        """Return a finding with paths of files in the repository relative to the root."""
         notes = tuple(note._replace(span=self._relative_span(note.span)) for note in finding.notes)
         return finding.with_changes(span=self._relative_span(finding.span), notes=notes)
 
@@ -166,7 +166,7 @@ class Version:
 
 
 def _common_parts(package: Path, folder: Path) -> int:
-    """Return the number of folders that the paths of a package and of a file's folder begin with."""
+    """Return the number of leading folders that the paths of a package and a folder have in common."""
     pairs = zip(package.parts, folder.parts, strict=False)
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
@@ -185,8 +185,8 @@ class Versions:
     new: Version
     changed_files: list[ChangedFile]
 
-    def translated(self, value: str, version: Version) -> str:
-        """Return a value of one version in which paths lead to the same files of the other version."""
+    def translate_paths(self, value: str, version: Version) -> str:
+        """Return a value of one version with paths that lead to the same files of the other version."""
         other = self.new if version.is_old else self.old
         folders = {share: other.shares[name] for name, share in version.shares.items() if name in other.shares}
         folders[version.root] = other.root
@@ -203,7 +203,7 @@ class Versions:
 
 
 def names_commit(folder: Path, name: str) -> bool:
-    """Return whether a word names a commit in the repository of a folder.
+    """Return whether a text names a commit in the repository that contains a folder.
 
     Raises:
         LinkwrightError: CLI341, CLI342, git cannot find the repository.
@@ -250,7 +250,7 @@ def _open_repository(folder: Path) -> GitRepository:
 
 
 def _split_range(repository: GitRepository, range_text: str) -> tuple[str, str]:
-    """Return the names of the old version and of the new version, which is empty for the working tree."""
+    """Return the names of the old and the new version. The new name is empty for the working tree."""
     if not range_text:
         return _default_branch(repository), ""
     separator = "..." if "..." in range_text else ".."
@@ -287,7 +287,7 @@ def _common_commit(repository: GitRepository, old_commit: str, old_name: str, ne
 def _is_checked_out(repository: GitRepository, commit: str) -> bool:
     """Return whether the working tree contains the files of a commit, so that they need not be written.
 
-    A working tree with links that point outside it is not used: the files of others could appear in the report.
+    A working tree with links to outside is not used, because foreign files could appear in the report.
     """
     if repository.resolve("HEAD") != commit or repository.changed_files(commit):
         return False

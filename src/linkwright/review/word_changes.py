@@ -1,4 +1,4 @@
-"""The changes of long texts that list words, such as command lines and the topics of a recording."""
+"""Compare long texts word by word, such as command lines and the topics of a recording."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from linkwright.review.changes import MAX_NAMES
 _MIN_WORDS = 4
 _MAX_WORDS = 2000
 _MAX_WORD = 120
-"""The number of characters up to which a word is shown as a whole."""
+"""The maximum number of characters of a word that is shown in full."""
 _MIN_COMMON = 0.5
-"""The share of words that both versions of a text have; others are compared as texts."""
+"""The minimum share of common words of texts that are compared word by word."""
 
 
 def words_text(old: str, new: str) -> Phrase | None:
-    """Return the replaced, added and removed words of a text, or None for texts that are not compared by words.
+    """Return the replaced, added and removed words of a text, or None for texts that are not lists of words.
 
     Args:
         old: the old text.
         new: the new text.
     """
-    old_words, new_words = _words(old), _words(new)
+    old_words, new_words = _split_words(old), _split_words(new)
     if not (_are_comparable(old_words) and _are_comparable(new_words)):
         return None
     added, removed = Counter(new_words) - Counter(old_words), Counter(old_words) - Counter(new_words)
@@ -41,25 +41,25 @@ def words_text(old: str, new: str) -> Phrase | None:
     texts = [phrase("{old} -> {new}", old=before, new=after) for before, after in dict.fromkeys(pairs)]
     parts = [joined_first(texts, MAX_NAMES)] if texts else []
     if added.total():
-        parts.append(phrase("{items} added", items=_joined(added, new_words)))
+        parts.append(phrase("{items} added", items=_join_words(added, new_words)))
     if removed.total():
-        parts.append(phrase("{items} removed", items=_joined(removed, old_words)))
+        parts.append(phrase("{items} removed", items=_join_words(removed, old_words)))
     return joined(parts, "; ")
 
 
-def _joined(counts: Counter[str], words: Iterable[str]) -> Phrase:
+def _join_words(counts: Counter[str], words: Iterable[str]) -> Phrase:
     return joined_first([word for word in dict.fromkeys(words) if counts[word] > 0], MAX_NAMES)
 
 
 def _are_comparable(words: Sequence[str]) -> bool:
-    """Return whether a text lists words, most of which are not numbers, and no nested lists or sentences of code."""
+    """Return whether words form a list of mostly non-numeric words, without nested lists or code."""
     named = [word for word in words if any(map(str.isalpha, word))]
     is_short = all(len(word) <= _MAX_WORD for word in words)
     return _MIN_WORDS <= len(words) <= _MAX_WORDS and is_short and 2 * len(named) > len(words)
 
 
-def _words(text: str) -> list[str]:
-    """Return the words of a text, each with its substitutions; none for a list in brackets."""
+def _split_words(text: str) -> list[str]:
+    """Return the words of a text. A substitution is not split. The result is empty for a list in brackets."""
     if text.startswith(("[", "{")):
         return []
     words, start, depth = [], 0, 0

@@ -1,1 +1,1 @@
-"""Drawings in reports: images and scenes in 3D."""
+"""Draw images and 3D scenes for reports."""

@@ -1,4 +1,4 @@
-"""Images of both versions of a robot, with the links outlined whose shape or place differs."""
+"""Render images of both versions of a robot, with changed and moved links outlined."""
 
 from __future__ import annotations
 
@@ -25,30 +25,32 @@ Array = NDArray[np.float64]
 _SIZE = (480, 360)
 _VIEWS_OF_COLLISIONS = ("iso", "front")
 _PLACES = ("origin xyz", "origin rpy")
-"""The ends of the names of properties with a place, which is compared as seen in the image."""
+"""The name endings of pose properties. Poses are compared as seen in the image."""
 _MOVED = 1e-5
-"""The maximum difference in m, and between the entries of rotation matrices, of a link in the same place."""
+"""The maximum difference, in m and between entries of rotation matrices, of a link that has not moved."""
 
 
 def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames) -> list[ViewImages]:
-    """Return images from four sides, or none if both robots look the same.
+    """Return images from four sides; empty if both robots look the same.
 
     All joints are at position 0, or at the middle of limits that exclude 0. Both images of a view have the same camera.
     """
-    changed = {*_other_surfaces(models, old, new, comparison), *_moved(old, new, comparison, frames)}
-    old_links = _drawn(old, {*set(old.links) - set(comparison.links), *(name for name, _ in changed)})
-    new_links = _drawn(new, {*set(new.links) - set(comparison.links.values()), *(name for _, name in changed)})
+    changed = {*_find_changed_surfaces(models, old, new, comparison), *_find_moved_links(old, new, comparison, frames)}
+    old_links = _links_with_visuals(old, {*set(old.links) - set(comparison.links), *(name for name, _ in changed)})
+    new_links = _links_with_visuals(
+        new, {*set(new.links) - set(comparison.links.values()), *(name for _, name in changed)}
+    )
     if not old_links and not new_links:
         return []
-    return _images(models, (old, old_links), (new, new_links), frames, {name: name for name in VIEWS})
+    return _render_pair(models, (old, old_links), (new, new_links), frames, {name: name for name in VIEWS})
 
 
 def collision_images(
     models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
 ) -> list[ViewImages]:
-    """Return images of the collision shapes from two sides, or none if these are the same.
+    """Return images of the collision shapes from two sides; empty if the shapes are equal.
 
-    The links whose shapes differ are outlined. Links without collision shapes are not drawn.
+    Links with changed shapes are outlined. Links without collision shapes are not drawn.
     """
     old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
     changed = {
@@ -60,17 +62,17 @@ def collision_images(
         return []
     old_links = (_with_collisions(old), {old_names[name] for name in changed})
     labels = {name: f"{name}, collision" for name in _VIEWS_OF_COLLISIONS}
-    return _images(models, old_links, (_with_collisions(new), changed), frames, labels)
+    return _render_pair(models, old_links, (_with_collisions(new), changed), frames, labels)
 
 
-def _images(
+def _render_pair(
     models: Pair,
     old: tuple[Robot, Collection[str]],
     new: tuple[Robot, Collection[str]],
     frames: SharedFrames,
     labels: Mapping[str, str],
 ) -> list[ViewImages]:
-    """Return images of both robots, or none if neither has something to draw.
+    """Return images of both robots; empty if neither has anything to draw.
 
     Args:
         models: the descriptions.
@@ -113,12 +115,12 @@ def _with_collisions(robot: Robot) -> Robot:
 
 
 def lone_images(model: Model, robot: Robot, *, is_old: bool) -> list[ViewImages]:
-    """Return images from four sides of a robot that only one version has, or none if it has no visuals."""
+    """Return images from four sides of a robot that only one version has; empty if it has no visuals."""
     return images_of_scene(robot_scene(robot, model.finder, folder=model.path.parent), is_old=is_old)
 
 
 def images_of_scene(scene: Scene, *, is_old: bool) -> list[ViewImages]:
-    """Return images from four sides of a scene that only one version has, or none if it is empty."""
+    """Return images from four sides of a scene that only one version has; empty for an empty scene."""
     if not len(scene.mesh.faces):
         return []
     images = []
@@ -128,27 +130,27 @@ def images_of_scene(scene: Scene, *, is_old: bool) -> list[ViewImages]:
     return images
 
 
-def _drawn(robot: Robot, links: Iterable[str]) -> set[str]:
+def _links_with_visuals(robot: Robot, links: Iterable[str]) -> set[str]:
     """Return the links of a robot that have visuals."""
     return {name for name in links if name in robot.links and robot.links[name].visuals}
 
 
-def _other_surfaces(models: Pair, old: Robot, new: Robot, comparison: Comparison) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of links with other shapes, colors or textures."""
+def _find_changed_surfaces(models: Pair, old: Robot, new: Robot, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of links whose shapes, colors or textures differ."""
     old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
     for difference in comparison.differences:
         is_visual = difference.subject == "link" and difference.property.startswith("visual")
         if not is_visual or difference.property.endswith(_PLACES) or difference.name not in old_names:
             continue
         names = old_names[difference.name], difference.name
-        if not difference.property.endswith("geometry") or _shapes(models.old, old, names[0]) != _shapes(
+        if not difference.property.endswith("geometry") or _shape_keys(models.old, old, names[0]) != _shape_keys(
             models.new, new, names[1]
         ):
             yield names
 
 
-def _shapes(model: Model, robot: Robot, link: str) -> list[Hashable]:
-    """Return keys for the shapes of a link's visuals, which are equal for equal meshes under different paths."""
+def _shape_keys(model: Model, robot: Robot, link: str) -> list[Hashable]:
+    """Return comparable keys of the visuals of a link. Equal meshes under different paths have equal keys."""
     geometries = (visual.geometry for visual in robot.links[link].visuals)
     return [_mesh_key(model, shape) if isinstance(shape, Mesh) else repr(shape) for shape in geometries]
 
@@ -161,17 +163,19 @@ def _mesh_key(model: Model, mesh: Mesh) -> Hashable:
     return (key or mesh.filename), mesh.scale
 
 
-def _moved(old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of links whose visuals are elsewhere, relative to the link that both robots have."""
+def _find_moved_links(
+    old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
+) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of links whose visuals moved relative to the shared link."""
     for old_name, new_name in comparison.links.items():
         if old_name in frames.old and new_name in frames.new:
-            old_places = _places(old, old_name, frames.old[old_name])
-            new_places = _places(new, new_name, frames.new[new_name])
+            old_places = _visual_poses(old, old_name, frames.old[old_name])
+            new_places = _visual_poses(new, new_name, frames.new[new_name])
             if old_places.shape != new_places.shape or not np.allclose(old_places, new_places, rtol=0.0, atol=_MOVED):
                 yield old_name, new_name
 
 
-def _places(robot: Robot, link: str, frame: Placement) -> Array:
-    """Return the rotations and positions of a link's visuals, shape (visuals, 4, 3), from the frame of the link."""
+def _visual_poses(robot: Robot, link: str, frame: Placement) -> Array:
+    """Return the rotations and positions of a link's visuals, shape (visuals, 4, 3), in the frame of the images."""
     places = [exact_placement(visual.origin).inside(frame) for visual in robot.links[link].visuals]
     return np.array([[*place.rotation, place.position] for place in places])

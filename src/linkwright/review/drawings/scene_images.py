@@ -1,4 +1,4 @@
-"""Images of both versions of a world, model or mesh, with the changed links outlined."""
+"""Render images of both versions of a world, model or mesh, with the changed links outlined."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ from linkwright.sdf.worlds import Sdf
 
 _SIZE = (480, 360)
 _MAX_FACES = 2_000_000
-"""The maximum number of triangles of both versions for which images are made; more take a minute."""
+"""The maximum number of triangles of both versions for which images are rendered. More take a minute."""
 _FAR = 8.0
-"""The size of a scene, in sizes of the changed links, from which only the surroundings of these links are shown."""
+"""The ratio of the sizes of a scene and its changed links from which only their surroundings are shown."""
 
 
 def read_worlds(pair: FilePair) -> tuple[Sdf, Sdf] | None:
     """Return both versions of a world or model with their includes resolved, or None if one cannot be read."""
-    old = _world(pair.versions.old, pair.old_file)
-    new = None if old is None else _world(pair.versions.new, pair.new_file)
+    old = _try_read_world(pair.versions.old, pair.old_file)
+    new = None if old is None else _try_read_world(pair.versions.new, pair.new_file)
     return None if old is None or new is None else (old, new)
 
 
@@ -45,42 +45,44 @@ def world_scenes(pair: FilePair, worlds: tuple[Sdf, Sdf]) -> tuple[Scene, Scene]
     """Return the scenes of both versions of a world or model, or None if one cannot be drawn."""
     library = SurfaceLibrary()
     sides = ((pair.versions.old, pair.old_file), (pair.versions.new, pair.new_file))
-    old, new = (_scene(version, file, world, library) for (version, file), world in zip(sides, worlds, strict=True))
+    old, new = (
+        _try_build_scene(version, file, world, library) for (version, file), world in zip(sides, worlds, strict=True)
+    )
     return None if old is None or new is None else (old, new)
 
 
 def world_images(old: Scene, new: Scene) -> list[ViewImages]:
-    """Return images of a world or model from four sides, or none if both versions look the same."""
-    return _images(old, new)
+    """Return images of a world or model from four sides; empty if both versions look the same."""
+    return _render_pair(old, new)
 
 
 def mesh_images(pair: FilePair) -> list[ViewImages]:
-    """Return images of a mesh from four sides, or none if both versions look the same or cannot be drawn."""
+    """Return images of a mesh from four sides; empty if both versions look the same or cannot be drawn."""
     try:
         old, new = (_mesh_scene(file) for file in (pair.old_file, pair.new_file))
     except LinkwrightError:
         return []
-    return _images(old, new, outline=False)
+    return _render_pair(old, new, has_outlines=False)
 
 
 def lone_world_images(version: Version, path: str) -> list[ViewImages]:
-    """Return images from four sides of a world or model that only one version has, or none if it cannot be drawn."""
+    """Return images from four sides of a world or model that only one version has; empty if it cannot be drawn."""
     file = version.file(path)
-    world = _world(version, file)
-    scene = None if world is None else _scene(version, file, world, SurfaceLibrary())
+    world = _try_read_world(version, file)
+    scene = None if world is None else _try_build_scene(version, file, world, SurfaceLibrary())
     if scene is None or len(scene.mesh.faces) > _MAX_FACES:
         return []
     return images_of_scene(scene, is_old=version.is_old)
 
 
-def _world(version: Version, file: Path) -> Sdf | None:
+def _try_read_world(version: Version, file: Path) -> Sdf | None:
     try:
         return examine_world(file, packages=version.finder(file.parent)).sdf
     except LinkwrightError:
         return None
 
 
-def _scene(version: Version, file: Path, world: Sdf, library: SurfaceLibrary) -> Scene | None:
+def _try_build_scene(version: Version, file: Path, world: Sdf, library: SurfaceLibrary) -> Scene | None:
     try:
         return world_scene(world, ResourceFinder(version.finder(file.parent)), library=library)
     except (LinkwrightError, FrameError):
@@ -92,13 +94,16 @@ def _mesh_scene(file: Path) -> Scene:
     return Scene([Body("", Placement(IDENTITY, (0.0, 0.0, 0.0)), surfaces)])
 
 
-def _images(old: Scene, new: Scene, *, outline: bool = True) -> list[ViewImages]:
+def _render_pair(old: Scene, new: Scene, *, has_outlines: bool = True) -> list[ViewImages]:
     changed = _changed_bodies(old, new), _changed_bodies(new, old)
     drawn = [body for bodies in changed for body in bodies if body.surfaces]
     if not drawn or len(old.mesh.faces) + len(new.mesh.faces) > _MAX_FACES:
         return []
     points = _shown_points([old.points, new.points], Scene(drawn).points)
-    scenes = [_outlined(scene, bodies) if outline else scene for scene, bodies in zip((old, new), changed, strict=True)]
+    scenes = [
+        _with_outlines(scene, bodies) if has_outlines else scene
+        for scene, bodies in zip((old, new), changed, strict=True)
+    ]
     images = []
     for name, view in VIEWS.items():
         camera = fitting_camera(view, _SIZE, points)
@@ -107,7 +112,7 @@ def _images(old: Scene, new: Scene, *, outline: bool = True) -> list[ViewImages]
 
 
 def _changed_bodies(scene: Scene, other: Scene) -> list[Body]:
-    """Return the links of a scene that the other does not have, or that look different or are elsewhere there."""
+    """Return the links of a scene that are missing, moved or look different in the other scene."""
     others = {body.name: body for body in other.bodies}
     return [body for body in scene.bodies if body.name not in others or not _is_same(body, others[body.name])]
 
@@ -119,12 +124,12 @@ def _is_same(body: Body, other: Body) -> bool:
 
 
 def _is_same_surface(surface: Surface, other: Surface) -> bool:
-    arrays = zip(_arrays(surface), _arrays(other), strict=True)
+    arrays = zip(_surface_arrays(surface), _surface_arrays(other), strict=True)
     is_same_color = (surface.color, surface.alpha) == (other.color, other.alpha)
     return is_same_color and all(_are_equal(first, second) for first, second in arrays)
 
 
-def _arrays(surface: Surface) -> list[NDArray[Any] | None]:
+def _surface_arrays(surface: Surface) -> list[NDArray[Any] | None]:
     return [surface.points, surface.faces, surface.vertex_colors, surface.texture]
 
 
@@ -132,13 +137,13 @@ def _are_equal(first: NDArray[Any] | None, second: NDArray[Any] | None) -> bool:
     return first is second or (first is not None and second is not None and np.array_equal(first, second))
 
 
-def _outlined(scene: Scene, bodies: Sequence[Body]) -> Scene:
+def _with_outlines(scene: Scene, bodies: Sequence[Body]) -> Scene:
     changed = {id(body) for body in bodies}
     return Scene([replace(body, outline=OUTLINE_COLOR) if id(body) in changed else body for body in scene.bodies])
 
 
 def _shown_points(scenes: Sequence[Array], changed: Array) -> list[Array]:
-    """Return the points that the images show: all, or the surroundings of a change that is small in its world."""
+    """Return the points that the images show: all points, or the surroundings of a small change."""
     low, high = changed.min(axis=0), changed.max(axis=0)
     size = float(np.linalg.norm(high - low)) or 1.0
     points = np.concatenate(scenes)

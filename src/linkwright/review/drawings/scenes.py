@@ -1,4 +1,4 @@
-"""Scenes of both versions of a robot in 3D, for a page that draws them without a server."""
+"""Build 3D scenes of both versions of a robot, for a page that draws them without a server."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ _MAX_BYTES = 15_000_000
 
 
 def robot_scene(models: Pair, old: Description, new: Description, roots: Sequence[Path]) -> RobotScene:
-    """Return the scene of both robots over each other, or the reason why there is none.
+    """Return a scene of both robots placed over each other, or the reason why there is none.
 
-    A scene contains the meshes. A description can name any file of the computer as a mesh, so there is no scene of one
-    that names files outside the repository and outside packages.
+    A scene contains the meshes. A description can name any file of the computer as a mesh, so a description
+    that names files outside the repository and outside packages gets no scene.
 
     Args:
         models: both models.
-        old: the old description.
-        new: the new description.
+        old: the description in the old version.
+        new: the description in the new version.
         roots: the folders of both versions of the repository.
     """
     from linkwright.panels.export.html import page_around, recorded_json
 
     try:
         page_around("")  # the page is not built in every installation
-        snapshot = _snapshot(models, old, new)
+        snapshot = _take_snapshot(models, old, new)
     except LinkwrightError as error:
         return RobotScene(reason=phrase("the scene in 3D is left out: {reason}", reason=error.diagnostics[0].message))
     outside = [path for path in snapshot.outside_files if not any(path.is_relative_to(root) for root in roots)]
@@ -52,7 +52,7 @@ def robot_scene(models: Pair, old: Description, new: Description, roots: Sequenc
     return RobotScene(data)
 
 
-def _snapshot(models: Pair, old: Description, new: Description) -> Snapshot:
+def _take_snapshot(models: Pair, old: Description, new: Description) -> Snapshot:
     from linkwright.viewer.model_snapshot import OldDescription, snapshot_of_model
 
     library = DescriptionLibrary()

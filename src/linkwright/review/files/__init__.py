@@ -1,1 +1,1 @@
-"""Comparisons of the other kinds of files: worlds, parameters, maps, interfaces, manifests and meshes."""
+"""Compare other kinds of files: worlds, parameters, maps, interfaces, manifests and meshes."""

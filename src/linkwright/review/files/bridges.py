@@ -1,4 +1,4 @@
-"""The comparison of configurations of ros_gz bridges: the topics that are bridged, with their types."""
+"""Compare configurations of ros_gz bridges: the bridged topics with their types."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.yaml_values import composed
+from linkwright.review.files.yaml_values import compose_yaml
 from linkwright.review.list_changes import change_text
 
 _TOPIC_KEYS = ("ros_topic_name", "topic_name", "gz_topic_name", "ign_topic_name")
@@ -28,7 +28,7 @@ class Bridge:
         settings: the settings by name.
         places: the line and the column of each setting, starting at 1.
         line: the line of the bridge.
-        column: its column.
+        column: the column of the bridge.
     """
 
     settings: Mapping[str, str]
@@ -49,19 +49,19 @@ class Bridge:
 
 
 def read_bridges(text: str) -> list[Bridge] | None:
-    """Return the bridges of a document in YAML, or None if it does not configure bridges.
+    """Return the bridges that a YAML document configures, or None if it does not configure bridges.
 
     Raises:
         UnreadableFileError: the text is not YAML.
     """
-    root = composed(text)
+    root = compose_yaml(text)
     if not isinstance(root, yaml.SequenceNode) or not root.value:
         return None
-    bridges = [bridge for bridge in map(_bridge, root.value) if bridge is not None]
+    bridges = [bridge for bridge in map(_read_bridge, root.value) if bridge is not None]
     return bridges if len(bridges) == len(root.value) else None
 
 
-def _bridge(node: yaml.Node) -> Bridge | None:
+def _read_bridge(node: yaml.Node) -> Bridge | None:
     settings: dict[str, str] = {}
     places: dict[str, tuple[int, int]] = {}
     for key, value in node.value if isinstance(node, yaml.MappingNode) else []:
@@ -76,7 +76,7 @@ def _bridge(node: yaml.Node) -> Bridge | None:
 def compare_bridges(pair: FilePair, old: Sequence[Bridge], new: Sequence[Bridge]) -> None:
     """Compare two versions of a configuration of bridges, topic by topic."""
     old_rest, new_rest = list(old), list(new)
-    for old_bridge, new_bridge in list(_matched(old_rest, new_rest)):
+    for old_bridge, new_bridge in list(_take_matches(old_rest, new_rest)):
         _compare_settings(pair, old_bridge, new_bridge)
     for bridge in new_rest:
         text = _with_contents(phrase("bridge '{topic}' added", topic=bridge.topic), bridge)
@@ -91,22 +91,22 @@ def _with_contents(text: Phrase, bridge: Bridge) -> Phrase:
     return phrase("{change}: {contents}", change=text, contents=bridge.contents) if bridge.contents else text
 
 
-def _matched(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:
-    """Take the bridges that belong together from both lists, and yield them.
+def _take_matches(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:
+    """Remove the matching bridges from both lists, and yield them as pairs.
 
-    They have the same name in ROS, or else the same name in the simulator and the same type.
+    Bridges match if they have the same ROS topic, or else the same simulator topic and type.
     """
     for keys in (("topic",), ("gz_topic_name", _ROS_TYPE), ("ign_topic_name", _ROS_TYPE)):
         for new_bridge in list(new):
-            key = _key(new_bridge, keys)
-            old_bridge = next((each for each in old if key is not None and _key(each, keys) == key), None)
+            key = _match_key(new_bridge, keys)
+            old_bridge = next((bridge for bridge in old if key is not None and _match_key(bridge, keys) == key), None)
             if old_bridge is not None:
                 old.remove(old_bridge)
                 new.remove(new_bridge)
                 yield old_bridge, new_bridge
 
 
-def _key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
+def _match_key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
     values = [bridge.topic if name == "topic" else bridge.settings.get(name) for name in names]
     known = tuple(value for value in values if value)
     return known if len(known) == len(names) else None
@@ -129,8 +129,8 @@ def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
 
 
 def _setting_reason(topic: str, name: str, old: str | None, new: str | None) -> Phrase | None:
-    """Return why a changed setting of a bridge is breaking, or None if it is not."""
-    if name == _ROS_TYPE and old is not None and new is not None and _same_type(old) != _same_type(new):
+    """Return the reason why a changed setting of a bridge is breaking, or None if it is not."""
+    if name == _ROS_TYPE and old is not None and new is not None and _normalize_type(old) != _normalize_type(new):
         return phrase("programs that use the topic '{topic}' with the old type do not receive it", topic=topic)
     if name == _DIRECTION and old is not None and old not in _FROM_ROS and new in _FROM_ROS:
         return phrase("the bridge does not publish the topic '{topic}' any more", topic=topic)
@@ -139,6 +139,6 @@ def _setting_reason(topic: str, name: str, old: str | None, new: str | None) -> 
     return None
 
 
-def _same_type(name: str) -> str:
-    """Return a type in one notation: ``sensor_msgs/Imu`` is ``sensor_msgs/msg/Imu``."""
+def _normalize_type(name: str) -> str:
+    """Return the name of a type in the long form: ``sensor_msgs/Imu`` becomes ``sensor_msgs/msg/Imu``."""
     return name.replace("/msg/", "/")

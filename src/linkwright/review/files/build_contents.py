@@ -1,4 +1,4 @@
-"""The line about an added or removed build file, with the targets and files that it installs."""
+"""Summarize an added or removed build file in one line."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined, phrase
-from linkwright.review.files.build_facts import BUILT_KINDS, INSTALLED_KINDS, BuildFacts, FactKind, listed
+from linkwright.review.files.build_facts import BUILT_KINDS, INSTALLED_KINDS, BuildFacts, FactKind, list_names
 
 _SHOWN = (
     *(FactKind.EXECUTABLE, FactKind.LIBRARY, *BUILT_KINDS, FactKind.COMPONENT, FactKind.PLUGIN_DESCRIPTION),
@@ -15,19 +15,19 @@ _SHOWN = (
 
 
 def build_contents(facts: BuildFacts) -> Phrase | None:
-    """Return what a build file installs and which tests it has, or None if it is nothing."""
-    parts = list(_parts(facts))
+    """Return the installed targets and files and the tests of a build file, or None if there are none."""
+    parts = list(_content_parts(facts))
     return joined(parts, "; ") if parts else None
 
 
-def _parts(facts: BuildFacts) -> Iterator[Phrase]:
+def _content_parts(facts: BuildFacts) -> Iterator[Phrase]:
     installed = {fact.name for fact in facts.facts if fact.kind in INSTALLED_KINDS}
     for kind in _SHOWN:
         left_out = installed if kind in BUILT_KINDS else ()
         names = list(dict.fromkeys(fact.name for fact in facts.facts if fact.kind is kind))
         names = [name for name in names if name not in left_out]
         if names:
-            yield phrase("{kind} {names}", kind=kind.title, names=listed(names))
+            yield phrase("{kind} {names}", kind=kind.title, names=list_names(names))
     folders = list(dict.fromkeys(f"{PurePosixPath(target).parent}/" for target in facts.files))
     if folders:
-        yield phrase("files in {names}", names=listed(folders))
+        yield phrase("files in {names}", names=list_names(folders))

@@ -1,4 +1,4 @@
-"""The facts of build files that other packages depend on, and their comparison."""
+"""Compare the facts of build files that other packages depend on."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import EMPTY, change_text, shortened
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.list_changes import EMPTY, change_text, shorten
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
 _MAX_RESTS = 6
-"""The number of other commands up to which their texts are shown."""
+"""The maximum number of other commands whose text is shown."""
 _MAX_TEXT = 200
 _MIN_FOLDER = 3
-"""The number of parts from which a folder is named instead of its files; paths in packages have fewer."""
+"""The minimum number of path parts of a folder that replaces its files in a report."""
 _LONG_LIST = 5
-"""The number of words of a command from which only the different ones are shown."""
+"""The minimum number of words of a command of which only the differing words are shown."""
 _DOWNLOADS = ("externalproject_add", "fetchcontent_declare")
-"""The commands that get the sources of other projects, from the address and version after their keywords."""
+"""The commands that download other projects, with an address and a version after keywords."""
 _KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
 
 
 class FactKind(Enum):
-    """The kind of a fact: its name in a report, and why it is breaking to remove one."""
+    """The kind of a fact: its title in a report, and the reason why removing such a fact is breaking."""
 
     EXECUTABLE = (
         phrase("installed executables"),
@@ -86,11 +86,11 @@ class FactKind(Enum):
 INSTALLED_KINDS = (FactKind.EXECUTABLE, FactKind.LIBRARY)
 """The kinds of targets that are installed."""
 BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
-"""The kinds of targets that are built, and that matter by themselves if they are not installed."""
+"""The kinds of built targets that are reported even if they are not installed."""
 _CONDITIONAL = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
 """The kinds whose conditions are shown when they are added or removed."""
 ANY_VERSION = "any version"
-"""The value of a package that is found in any version."""
+"""The value for a package without a required version."""
 
 
 @dataclass(frozen=True)
@@ -98,12 +98,12 @@ class Fact:
     """A fact of a build file.
 
     Attributes:
-        kind: the kind.
+        kind: the kind of the fact.
         name: the name of the target, package or other subject.
         value: a property that may change, such as the function of an executable; empty if there is none.
-        span: the location.
+        span: the location in the file.
         is_value_used: whether other packages use the value, so that another value is breaking.
-        condition: the condition under which the fact holds, as it is written; empty for always.
+        condition: the condition under which the fact holds, as written in the file; empty for always.
     """
 
     kind: FactKind
@@ -120,10 +120,10 @@ _KNOWN_VARIABLES = frozenset(
 
 
 class EnvironmentVariables:
-    """The environment variables that decide what is built, by name, with their locations.
+    """The environment variables that the build reads, by name, with their locations.
 
     Args:
-        variables: the names and locations. Those that ROS and systems set themselves are left out.
+        variables: the names and locations. Variables that ROS and the system set themselves are left out.
     """
 
     def __init__(self, variables: Iterable[tuple[str, Span | None]]) -> None:
@@ -133,7 +133,7 @@ class EnvironmentVariables:
                 self._spans.setdefault(name, span)
 
     def compare(self, pair: FilePair, new: EnvironmentVariables) -> None:
-        """Add the variables that only the old version or only the new version reads."""
+        """Report the variables that only one version reads."""
         for name, span in new._spans.items():
             if name not in self._spans:
                 text = phrase("environment variable '{name}' decides what is built", name=name)
@@ -167,7 +167,7 @@ class BuildFacts:
     Attributes:
         facts: the facts that are known.
         files: the sources of the installed files relative to the package, by destination relative to the prefix.
-        unknown: the reasons why more files may be installed than `files` has.
+        unknown: the reasons why more files may be installed than `files` contains.
         rest: the other commands or settings, each with its name and its text.
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
@@ -186,11 +186,11 @@ class BuildFacts:
 
     @property
     def is_complete(self) -> bool:
-        """Whether `files` has all installed files."""
+        """Whether `files` contains all installed files."""
         return not self.unknown
 
     def place(self, path: str) -> str:
-        """Return an installed path without the name of the package, whose change the manifest reports."""
+        """Return an installed path without the name of the package. The manifest reports a new name."""
         parts = PurePosixPath(path).parts
         is_own = len(parts) > 1 and parts[1] == self.project
         return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
@@ -204,9 +204,9 @@ def compare_build_files(
     """Compare two versions of a build file.
 
     Args:
-        pair: the versions.
+        pair: both versions of the build file.
         read: the function that returns the facts of a version, from its path in the repository.
-        compare_more: a function that compares what only files of this kind have.
+        compare_more: a function that compares parts specific to this kind of build file.
     """
     sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
     versions = {version.file(path): (version, path) for version, path in sides}
@@ -218,7 +218,7 @@ def compare_build_files(
 
 
 def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Add the differences between the facts of two versions of a build file."""
+    """Report the differences between the facts of two versions of a build file."""
     conditions: dict[tuple[str, str], list[Fact]] = {}
     for kind in FactKind:
         old_facts, new_facts = (
@@ -242,37 +242,37 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
         if kind in BUILT_KINDS:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
-            added, removed = ([fact for fact in each if fact.name not in installed] for each in (added, removed))
-        _add_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
+            added, removed = ([fact for fact in facts if fact.name not in installed] for facts in (added, removed))
+        _report_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
         if added:
             reason = None
             if kind is FactKind.STOP:
                 reason = phrase("the build fails under a condition under which it did not fail before")
-            pair.add(_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
+            pair.add(_facts_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
         if removed:
             location = pair.location(removed[0].span, is_old=True)
-            pair.add(_sentence(kind, removed, is_added=False), location, kind.reason)
-    _add_conditions(pair, conditions)
+            pair.add(_facts_sentence(kind, removed, is_added=False), location, kind.reason)
+    _report_conditions(pair, conditions)
     _compare_files(pair, old, new)
     _compare_rest(pair, old, new)
     old.environment.compare(pair, new.environment)
 
 
-def _add_renamed(
+def _report_renamed(
     pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact], targets: Mapping[str, str]
 ) -> None:
-    """Add the facts with new names, and take them from both lists.
+    """Report the renamed facts, and remove them from both lists.
 
     Args:
-        pair: the versions.
+        pair: both versions of the build file.
         kind: the kind of the facts.
         removed: the facts of the old version.
         added: the facts of the new version.
-        targets: the new names of targets that have the same sources, by the old ones.
+        targets: the new names of targets that have the same sources, by old name.
     """
-    names = PackageNames(renamed_packages(pair.versions))
+    names = PackageNames(find_renamed_packages(pair.versions))
     for old in list(removed):
-        new = next((fact for fact in added if fact.name == names.derived(old.name)), None)
+        new = next((fact for fact in added if fact.name == names.rename_derived(old.name)), None)
         new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
         new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
         if new is not None:
@@ -283,7 +283,7 @@ def _add_renamed(
 
 
 def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
-    """Return the new names of targets that only one version has and that have the same first source."""
+    """Return the new names of renamed targets by old name. A renamed target keeps its first source."""
     sources = {
         next(iter(parts.sources)): name
         for name, parts in new.targets.items()
@@ -301,13 +301,13 @@ def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) ->
     """Return the path of a source in the new version.
 
     Args:
-        pair: the versions.
-        old: the old facts.
-        new: the new facts.
+        pair: both versions of the build file.
+        old: the facts of the old version.
+        new: the facts of the new version.
         source: the path in the old version.
 
     Returns:
-        The path relative to the package; the old one if the file was not renamed.
+        The path relative to the package; the old path if the file was not renamed.
     """
     path = (PurePosixPath(old.package) / source).as_posix()
     new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), None)
@@ -315,7 +315,7 @@ def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) ->
     return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
 
 
-def _sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
+def _facts_sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
     texts = [_fact_text(fact) for fact in facts]
     return _list_sentence(kind.title, texts, is_added=is_added)
 
@@ -328,12 +328,14 @@ def _fact_text(fact: Fact) -> str:
     return fact.name if is_plain else f"{fact.name} (if {fact.condition})"
 
 
-def _add_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
-    """Add the facts that hold under another condition now; those with the same conditions in one line."""
+def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
+    """Report facts whose condition changed, with the same change of several facts in one line."""
     for (old_condition, new_condition), facts in conditions.items():
         kinds = dict.fromkeys(fact.kind for fact in facts)
         groups = (
-            phrase("{kind} {names}", kind=kind.title, names=listed([fact.name for fact in facts if fact.kind is kind]))
+            phrase(
+                "{kind} {names}", kind=kind.title, names=list_names([fact.name for fact in facts if fact.kind is kind])
+            )
             for kind in kinds
         )
         text = phrase(
@@ -350,14 +352,14 @@ def _condition_text(condition: str) -> Phrase:
 
 
 def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
-    names_text = listed(names)
+    names_text = list_names(names)
     if is_added:
         return phrase("{kind} added: {names}", kind=title, names=names_text)
     return phrase("{kind} removed: {names}", kind=title, names=names_text)
 
 
-def listed(names: Sequence[str]) -> Phrase:
-    """Return the first names, and the number of the others."""
+def list_names(names: Sequence[str]) -> Phrase:
+    """Return the names as a list, or the first names and the number of the remaining ones."""
     first = quoted_names(names[:MAX_NAMES])
     if len(names) <= MAX_NAMES:
         return first
@@ -365,7 +367,7 @@ def listed(names: Sequence[str]) -> Phrase:
 
 
 def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
-    """Return whether both versions or none have the file of an interface, so that the file is not reported itself."""
+    """Return whether both or neither version has the interface file, so that the file itself is not reported."""
     if fact.kind is not FactKind.INTERFACE:
         return True
     path = (PurePosixPath(facts.package) / fact.name).as_posix()
@@ -376,7 +378,7 @@ def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
 
 
 def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Add the files that only one version installs although both have them, and those with another destination."""
+    """Report files that both versions have but only one installs, and files with another destination."""
     old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
     kept = {source: _new_source(pair, old, new, source) for source in old_sources}
     moved: dict[tuple[str, str], list[str]] = {}
@@ -390,33 +392,35 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             if new.unknown <= old.unknown:
                 removed.append(target)
         elif new_source == source and old.place(target) != new.place(new_target):
-            places = _folder(target), _folder(new_target)
+            places = _folder_name(target), _folder_name(new_target)
             is_renamed = places[0] == places[1]
             moved.setdefault(places, []).append(
-                f"{_name(target)} -> {_name(new_target)}" if is_renamed else _name(target)
+                f"{_file_name(target)} -> {_file_name(new_target)}" if is_renamed else _file_name(target)
             )
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
     for (old_folder, new_folder), names in moved.items():
         text = phrase(
-            "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=listed(names)
+            "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=list_names(names)
         )
         if old_folder == new_folder:
-            text = phrase("installed under another name in {folder}: {names}", folder=old_folder, names=listed(names))
+            text = phrase(
+                "installed under another name in {folder}: {names}", folder=old_folder, names=list_names(names)
+            )
         pair.add(text, None, phrase("programs that look for the files do not find them"))
     if added and old.unknown <= new.unknown:
         known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
         folders = [name for name in files_and_folders(added, old.files) if name.endswith("/")]
         names = list(dict.fromkeys([*folders, *files_and_folders(known, old.files)]))
         if names:
-            pair.add(phrase("installed now: {names}", names=listed(names)), None)
+            pair.add(phrase("installed now: {names}", names=list_names(names)), None)
     if removed:
         names = files_and_folders(removed, new.files)
-        text = phrase("not installed any more: {names}", names=listed(names))
+        text = phrase("not installed any more: {names}", names=list_names(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
 
 
 def _new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
-    """Return the path of an installed file in the new version, or None if the new version does not have it."""
+    """Return the path of an installed file in the new version, or None if the new version lacks it."""
     path = (PurePosixPath(old.package) / source).as_posix()
     new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), path)
     if new_path is None or not pair.versions.new.file(new_path).is_file():
@@ -430,7 +434,7 @@ def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
 
 
 def files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
-    """Return installed files, or their folders if the other version installs nothing in these folders."""
+    """Return installed files, or their folders where the other version installs nothing in the folder."""
     other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
     names: dict[str, None] = {}
     for target in targets:
@@ -441,11 +445,11 @@ def files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list
     return list(names)
 
 
-def _folder(path: str) -> str:
+def _folder_name(path: str) -> str:
     return PurePosixPath(path).parent.as_posix()
 
 
-def _name(path: str) -> str:
+def _file_name(path: str) -> str:
     return PurePosixPath(path).name
 
 
@@ -453,39 +457,39 @@ def _name(path: str) -> str:
 
 
 def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Add the other commands that differ: a few with their texts, more with their names."""
-    gone, come = _lone_items(old.rest, new.rest), _lone_items(new.rest, old.rest)
-    names = list(dict.fromkeys(name for name, _ in (*come, *gone)))
+    """Report the other commands that differ: a few as text, more of them by name."""
+    removed, added = _lone_items(old.rest, new.rest), _lone_items(new.rest, old.rest)
+    names = list(dict.fromkeys(name for name, _ in (*added, *removed)))
     if len(names) > _MAX_RESTS:
-        pair.add(phrase("other build settings changed: {names}", names=listed(names)), None)
+        pair.add(phrase("other build settings changed: {names}", names=list_names(names)), None)
         return
     for name in names:
-        old_texts, new_texts = ([text for other, text in items if other == name] for items in (gone, come))
+        old_texts, new_texts = ([text for other, text in items if other == name] for items in (removed, added))
         old_text, new_text = ("; ".join(filter(None, texts)) for texts in (old_texts, new_texts))
         if name in _DOWNLOADS and len(old_texts) == len(new_texts) == 1:
             for text in _keyword_changes(name, old_text.split(), new_text.split()):
                 pair.add(text, None)
         elif old_texts and new_texts:
-            pair.add(_words_text(name, old_text, new_text), None)
+            pair.add(_word_changes_text(name, old_text, new_text), None)
         elif new_texts:
-            text = phrase("{parameter} added: {items}", parameter=name, items=shortened(new_text, _MAX_TEXT))
+            text = phrase("{parameter} added: {items}", parameter=name, items=shorten(new_text, _MAX_TEXT))
             pair.add(text if new_text else phrase("{parameter} added", parameter=name), None)
         else:
-            text = phrase("{parameter} removed: {items}", parameter=name, items=shortened(old_text, _MAX_TEXT))
+            text = phrase("{parameter} removed: {items}", parameter=name, items=shorten(old_text, _MAX_TEXT))
             pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
 
 
 def _keyword_changes(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
     """Yield the changes of the arguments of a command after each keyword, such as ``GIT_TAG``."""
-    old, new = _by_keyword(old_words), _by_keyword(new_words)
+    old, new = _group_by_keyword(old_words), _group_by_keyword(new_words)
     for keyword in dict.fromkeys([*old, *new]):
         before, after = old.get(keyword), new.get(keyword)
         if before != after:
             yield change_text(f"{name} {keyword}".strip(), before or EMPTY, after or EMPTY)
 
 
-def _by_keyword(words: Sequence[str]) -> dict[str, str]:
-    """Return the arguments after each keyword; those before the first one under its name, which is empty."""
+def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
+    """Return the arguments by the keyword before them. The first arguments have an empty keyword."""
     values: dict[str, list[str]] = {}
     keyword = ""
     for word in words:
@@ -497,8 +501,8 @@ def _by_keyword(words: Sequence[str]) -> dict[str, str]:
     return {key: " ".join(items) for key, items in values.items()}
 
 
-def _words_text(name: str, old: str, new: str) -> Phrase:
-    """Return the change of the arguments of a command: of long lists, the words that were added and removed."""
+def _word_changes_text(name: str, old: str, new: str) -> Phrase:
+    """Return the change of the arguments of a command. For long lists, only added and removed words are shown."""
     old_words, new_words = old.split(), new.split()
     added = [word for word in new_words if word not in old_words]
     removed = [word for word in old_words if word not in new_words]

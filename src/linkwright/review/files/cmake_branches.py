@@ -1,4 +1,4 @@
-"""The conditions around the commands of a ``CMakeLists.txt``, as they are written."""
+"""Find the conditions around the commands of a ``CMakeLists.txt``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.packages.readers.cmake_syntax import (
 
 
 def conditions_of(source: SourceText) -> dict[int, str]:
-    """Return the condition of each argument in a file, by the offset of the argument. Unconditional ones are absent."""
+    """Return the condition of each argument in a file, by offset. Unconditional arguments are absent."""
     conditions: dict[int, str] = {}
     for statement, condition in conditional_statements(source):
         if condition:
@@ -25,7 +25,7 @@ def conditions_of(source: SourceText) -> dict[int, str]:
 
 
 def conditional_statements(source: SourceText) -> Iterator[tuple[Statement, str]]:
-    """Yield the commands of a file, each with the condition around it; empty if there is none."""
+    """Yield the commands of a file with the condition around each, which is empty if there is none."""
     yield from _walk(list(statements(source)), ())
 
 

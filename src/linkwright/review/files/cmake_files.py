@@ -1,4 +1,4 @@
-"""The comparison of ``CMakeLists.txt``: executables, libraries, interfaces and files that a package installs."""
+"""Compare ``CMakeLists.txt`` files: the executables, libraries, interfaces and files that a package installs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _COMMANDS_AFTER_TARGETS = (
     *("install", "target_", "set_target_properties", "add_dependencies", "ament_target_dependencies"),
     *("ament_export_", "catkin_package", "project"),
 )
-"""The beginnings of the names of commands that name targets and make none."""
+"""The prefixes of commands that refer to targets without creating them."""
 _EXECUTABLES = ("add_executable", "ament_auto_add_executable", "rosbuild_add_executable", "cuda_add_executable")
 _LIBRARIES = ("add_library", "ament_auto_add_library", "rosbuild_add_library", "cuda_add_library")
 _LIBRARY_TYPES = ("SHARED", "STATIC", "MODULE", "INTERFACE", "OBJECT")
@@ -61,7 +61,7 @@ _IRRELEVANT = re.compile(
     r"CMAKE_(EXPORT_COMPILE_COMMANDS|VERBOSE_MAKEFILE|COLOR_\w+|RULE_MESSAGES|INSTALL_MESSAGE|MESSAGE_\w+|"
     r"\w+_COMPILER_LAUNCHER|TLS_VERIFY|SUPPRESS_\w+|WARN_\w+|ERROR_\w+)"
 )
-"""The variables that change neither what is built nor what is installed."""
+"""The variables that affect neither the build nor the installation."""
 _COMMENT = re.compile(r"#[^\n]*")
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _ENVIRONMENT = re.compile(r"\bENV\{(\w+)\}")
@@ -70,7 +70,7 @@ _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
 
 def compare_cmake_files(pair: FilePair) -> None:
-    """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, as far as CMake is not needed for it."""
+    """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, without running CMake."""
     compare_build_files(pair, read_cmake_facts, compare_targets)
 
 
@@ -78,10 +78,10 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     """Return the facts of a ``CMakeLists.txt`` with its subdirectories."""
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
-    facts = BuildFacts(package=_parent(path))
+    facts = BuildFacts(package=_parent_folder(path))
     program = CMakeProgram(file.parent)
     commands = list(program.run(source))
-    for reader in (_targets, _interfaces, _exports, _packages, _tests, _settings):
+    for reader in (_installed_targets, _read_interfaces, _read_exports, _read_packages, _read_tests, _read_settings):
         facts.facts += reader(commands)
     facts.facts += _own_interfaces(commands, file.parent)
     facts.facts += _built_targets(commands)
@@ -89,7 +89,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     if folder_name and any(command.name == "rosbuild_init" for command in commands):
         program.variables.setdefault("PROJECT_NAME", folder_name)
     facts.facts += _skipped_targets(source, commands, program.variables)
-    facts.facts += _stops(source, commands)
+    facts.facts += _build_failures(source, commands)
     facts.targets = read_targets(commands)
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
@@ -98,7 +98,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     cmake = read_cmake(source, file.parent)
     _read_files(facts, cmake, file.parent)
     facts.rest = [
-        (_name_of(command), _own_text(command, facts.project))
+        (_name_of(command), _normalized_arguments(command, facts.project))
         for command in commands
         if command.name not in _FACT_COMMANDS and not _is_test(command) and not _is_variable(command)
     ]
@@ -110,31 +110,31 @@ def _name_of(command: Command) -> str:
     return command.words[0] if command.name == "set" else command.name
 
 
-def _own_text(command: Command, project: str) -> str:
-    """Return the arguments of a command without interfaces, and without the name of the project."""
+def _normalized_arguments(command: Command, project: str) -> str:
+    """Return the arguments of a command without interfaces and the name of the project."""
     words = [word for word in command.words if not word.endswith(_INTERFACE_SUFFIXES)]
     return " ".join("${PROJECT_NAME}" if word == project else word for word in words)
 
 
 def _is_variable(command: Command) -> bool:
-    """Return whether a command sets a variable of the file, whose uses are compared."""
+    """Return whether a command sets a variable of the file. The uses of the variable are compared instead."""
     if command.name != "set":
         return False
     name = "".join(command.words[:1])
     return not name.startswith("CMAKE_") or name in _STANDARDS or _IRRELEVANT.fullmatch(name) is not None
 
 
-def _parent(path: str) -> str:
+def _parent_folder(path: str) -> str:
     parent = PurePosixPath(path).parent.as_posix()
     return "" if parent == "." else parent
 
 
 def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
-    """Add the files that are copied. Programs are executables."""
+    """Add the copied files to the facts. Copied programs count as executables."""
     facts.unknown = frozenset(cmake.unknown)
     programs = cmake.programs
     spans = {item.text: cmake.span(item) for item in cmake.files}
-    _move_missing_files(facts, cmake, package)
+    _drop_missing_sources(facts, cmake, package)
     facts.project = "" if cmake.project is None else cmake.project.text
     try:
         facts.files = {file.destination: file.source for file in cmake.installed_files(package) if file.content is None}
@@ -147,12 +147,12 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     facts.facts += [Fact(FactKind.MODULE, module) for module in cmake.modules]
 
 
-def _move_missing_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
-    """Take what the repository does not have from the rules that copy files, and add the folders as facts."""
+def _drop_missing_sources(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
+    """Remove sources that the repository lacks from the copy rules, and add missing folders as facts."""
     for index, rule in enumerate(cmake.copies):
         missing = [item for item in rule.items if not _exists(package, item.text)]
         if rule.kind == "DIRECTORY":
-            facts.facts += [_fact(FactKind.FOLDER, item, rule.destination or "") for item in missing]
+            facts.facts += [_make_fact(FactKind.FOLDER, item, rule.destination or "") for item in missing]
         cmake.copies[index] = replace(rule, items=tuple(item for item in rule.items if item not in missing))
 
 
@@ -160,52 +160,56 @@ def _exists(package: Path, item: str) -> bool:
     return item.startswith((BUILD, "$<")) or (package / item).exists()
 
 
-def _fact(kind: FactKind, argument: Argument, value: str = "", name: str | None = None) -> Fact:
+def _make_fact(kind: FactKind, argument: Argument, value: str = "", name: str | None = None) -> Fact:
     span = argument.source.span(argument.start, argument.end)
     is_value_used = kind in (FactKind.EXECUTABLE, FactKind.PLUGIN_DESCRIPTION)
-    condition = _conditions(argument.source).get(argument.start, "")
+    condition = _read_conditions(argument.source).get(argument.start, "")
     return Fact(kind, argument.text if name is None else name, value, span, is_value_used, condition)
 
 
 @lru_cache(maxsize=16)
-def _conditions(source: SourceText) -> dict[int, str]:
+def _read_conditions(source: SourceText) -> dict[int, str]:
     return conditions_of(source)
 
 
-def _targets(commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the targets that are installed and exported, and the executables of components."""
+def _installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the installed and exported targets, and the executables of components."""
     libraries = {command.words[0] for command in commands if command.name in _LIBRARIES and command.words}
     built = _BuiltNames(commands)
     for command in commands:
         arguments = command.arguments
         if command.name.startswith("ament_auto_add_") and arguments:
             kind = FactKind.EXECUTABLE if command.name in _EXECUTABLES else FactKind.LIBRARY
-            yield _fact(kind, arguments[0])
+            yield _make_fact(kind, arguments[0])
         if command.name == "install" and command.words[:1] == ["TARGETS"]:
             targets = takewhile(lambda argument: argument.text not in _INSTALL_KEYWORDS, arguments[1:])
             for target in (target for target in targets if not is_open(target.text)):
                 if target.text not in built:
                     continue
                 if target.text in libraries:
-                    yield _fact(FactKind.LIBRARY, target)
+                    yield _make_fact(FactKind.LIBRARY, target)
                 else:
-                    yield _fact(FactKind.EXECUTABLE, target, _destination(command.words))
+                    yield _make_fact(FactKind.EXECUTABLE, target, _installation_folder(command.words))
                 if "EXPORT" in command.words:
-                    yield _fact(FactKind.EXPORTED_TARGET, target)
+                    yield _make_fact(FactKind.EXPORTED_TARGET, target)
         if command.name == "rclcpp_components_register_node":
-            yield from _after(command, "EXECUTABLE", FactKind.EXECUTABLE)
-            yield from _after(command, "PLUGIN", FactKind.COMPONENT)
+            yield from _arguments_after(command, "EXECUTABLE", FactKind.EXECUTABLE)
+            yield from _arguments_after(command, "PLUGIN", FactKind.COMPONENT)
         if command.name == "rclcpp_components_register_nodes":
-            yield from (_fact(FactKind.COMPONENT, argument) for argument in arguments[1:])
+            yield from (_make_fact(FactKind.COMPONENT, argument) for argument in arguments[1:])
 
 
 class _BuiltNames:
-    """The names that can be those of built targets: CMake stops at an installed target that nothing builds."""
+    """The possible names of built targets. CMake fails at an installed target that nothing builds."""
 
     def __init__(self, commands: Sequence[Command]) -> None:
-        makers = [each for each in commands if not each.name.startswith(_COMMANDS_AFTER_TARGETS) and each.words]
+        makers = [
+            command for command in commands if not command.name.startswith(_COMMANDS_AFTER_TARGETS) and command.words
+        ]
         self._names = {word for command in makers for word in command.words}
-        self._may_be_any = any(is_open(each.words[0]) for each in makers if each.name in _EXECUTABLES + _LIBRARIES)
+        self._may_be_any = any(
+            is_open(command.words[0]) for command in makers if command.name in _EXECUTABLES + _LIBRARIES
+        )
 
     def __contains__(self, name: str) -> bool:
         return self._may_be_any or name in self._names
@@ -217,11 +221,11 @@ def _built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
         if command.name not in _EXECUTABLES + _LIBRARIES or not command.arguments or is_open(command.words[0]):
             continue
         library_type = next((word for word in command.words[1:2] if word in _LIBRARY_TYPES), "")
-        yield _fact(_built_kind(command.name, commands), command.arguments[0], library_type)
+        yield _make_fact(_built_kind(command.name, commands), command.arguments[0], library_type)
 
 
 def _skipped_targets(source: SourceText, commands: Sequence[Command], variables: Mapping[str, str]) -> Iterator[Fact]:
-    """Yield the targets that are only built under conditions that do not hold here, such as another version of ROS."""
+    """Yield the targets of unfulfilled conditions, such as a condition for another version of ROS."""
 
     def with_values(text: str) -> str:
         return _VARIABLE.sub(lambda match: variables.get(match[1], match[0]), text)
@@ -239,55 +243,55 @@ def _skipped_targets(source: SourceText, commands: Sequence[Command], variables:
 
 
 def _built_kind(command: str, commands: Sequence[Command]) -> FactKind:
-    """Return the kind of the targets of a command: in ROS 1, they can be used although they are not installed."""
-    if not any(each.name in ("catkin_package", "rosbuild_init") for each in commands):
+    """Return the kind of the targets of a command. In ROS 1, targets can be used without being installed."""
+    if not any(command.name in ("catkin_package", "rosbuild_init") for command in commands):
         return FactKind.BUILT_TARGET
     return FactKind.BUILT_EXECUTABLE if command in _EXECUTABLES else FactKind.BUILT_LIBRARY
 
 
-def _stops(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the messages with which the build fails, also under conditions that do not hold here."""
+def _build_failures(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the messages of possible build failures, including unfulfilled conditions."""
     sources = {source.name: source}
     for command in commands:
         sources |= {argument.source.name: argument.source for argument in command.arguments[:1]}
-    for each in sources.values():
-        for statement, condition in conditional_statements(each):
+    for source in sources.values():
+        for statement, condition in conditional_statements(source):
             tokens = statement.tokens
             if statement.name == "message" and len(tokens) > 1 and tokens[0].text in ("FATAL_ERROR", "SEND_ERROR"):
                 text = " ".join(" ".join(token.text for token in tokens[1:]).split())
-                yield Fact(FactKind.STOP, text, span=each.span(tokens[1].start, tokens[1].end), condition=condition)
+                yield Fact(FactKind.STOP, text, span=source.span(tokens[1].start, tokens[1].end), condition=condition)
 
 
-def _destination(words: Sequence[str]) -> str:
-    """Return the folder into which executables are installed, or an empty text if it is not known."""
+def _installation_folder(words: Sequence[str]) -> str:
+    """Return the installation folder of executables; empty if it is unknown."""
     start = words.index("RUNTIME") if "RUNTIME" in words else 0
     rest = words[start:]
     target = rest[rest.index("DESTINATION") + 1] if "DESTINATION" in rest[:-1] else ""
     return "" if is_open(target) else target.rstrip("/")
 
 
-def _after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
+def _arguments_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
     words = command.words
     if keyword in words[:-1]:
-        yield _fact(kind, command.arguments[words.index(keyword) + 1])
+        yield _make_fact(kind, command.arguments[words.index(keyword) + 1])
 
 
-def _interfaces(commands: Sequence[Command]) -> Iterator[Fact]:
+def _read_interfaces(commands: Sequence[Command]) -> Iterator[Fact]:
     for command in commands:
         if command.name == "rosidl_generate_interfaces":
             for argument in command.arguments:
                 if argument.text.endswith(_INTERFACE_SUFFIXES):
-                    yield _fact(FactKind.INTERFACE, argument, name=within_package(argument.text, command.folder))
+                    yield _make_fact(FactKind.INTERFACE, argument, name=within_package(argument.text, command.folder))
                 elif argument.text == "DEPENDENCIES":
                     break
         if command.name in ("rosidl_generate_interfaces", "generate_messages"):
             yield from _listed_after(command, "DEPENDENCIES", FactKind.INTERFACE_DEPENDENCY)
         if command.name in ("generate_dynamic_reconfigure_options", "gencfg"):
-            yield from (_fact(FactKind.DYNAMIC, argument) for argument in command.arguments)
+            yield from (_make_fact(FactKind.DYNAMIC, argument) for argument in command.arguments)
 
 
 def _own_interfaces(commands: Sequence[Command], package: Path) -> Iterator[Fact]:
-    """Yield the interfaces that commands of ROS 1 build. Those without a list build all of a folder."""
+    """Yield the interfaces that ROS 1 commands build. A command without a list builds all interfaces of a folder."""
     for command in commands:
         if command.name not in _INTERFACE_COMMANDS:
             continue
@@ -296,22 +300,22 @@ def _own_interfaces(commands: Sequence[Command], package: Path) -> Iterator[Fact
         folder = words[words.index("DIRECTORY") + 1] if "DIRECTORY" in words[:-1] else folder
         named = [argument for argument in command.arguments if argument.text.endswith(suffix)]
         for argument in named:
-            yield _fact(FactKind.INTERFACE, argument, name=f"{folder}/{argument.text}")
+            yield _make_fact(FactKind.INTERFACE, argument, name=f"{folder}/{argument.text}")
         if not named and "FILES" not in words:
             for file in sorted((package / folder).glob(f"*{suffix}")):
                 yield Fact(FactKind.INTERFACE, f"{folder}/{file.name}")
 
 
-def _exports(commands: Sequence[Command]) -> Iterator[Fact]:
+def _read_exports(commands: Sequence[Command]) -> Iterator[Fact]:
     project = next((command.words[0] for command in commands if command.name == "project" and command.words), "")
     for command in commands:
         if command.name == "pluginlib_export_plugin_description_file" and len(command.arguments) > 1:
             base, description = command.arguments[:2]
-            yield _fact(FactKind.PLUGIN_DESCRIPTION, description, base.text)
+            yield _make_fact(FactKind.PLUGIN_DESCRIPTION, description, base.text)
         elif command.name == "ament_export_dependencies":
-            yield from (_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in command.arguments)
+            yield from (_make_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in command.arguments)
         elif command.name == "ament_export_libraries":
-            yield from (_fact(FactKind.EXPORTED_TARGET, item) for item in command.arguments)
+            yield from (_make_fact(FactKind.EXPORTED_TARGET, item) for item in command.arguments)
         elif command.name == "ament_export_include_directories":
             yield from (_exported_folder(item, project) for item in command.arguments)
         elif command.name == "catkin_package":
@@ -322,8 +326,8 @@ def _exports(commands: Sequence[Command]) -> Iterator[Fact]:
 
 
 def _exported_folder(argument: Argument, project: str) -> Fact:
-    """Return the fact about an exported folder. The folder of the project in it makes no difference to others."""
-    return _fact(FactKind.EXPORTED_FOLDER, argument, name=argument.text.removesuffix(f"/{project}"))
+    """Return the fact about an exported folder. The name of the project in it is ignored."""
+    return _make_fact(FactKind.EXPORTED_FOLDER, argument, name=argument.text.removesuffix(f"/{project}"))
 
 
 def _listed_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
@@ -331,50 +335,50 @@ def _listed_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fa
     if keyword in command.words:
         rest = command.arguments[command.words.index(keyword) + 1 :]
         yield from (
-            _fact(kind, item)
+            _make_fact(kind, item)
             for item in takewhile(lambda argument: argument.text not in _KEYWORDS, rest)
             if not item.text.startswith("$")
         )
 
 
-def _packages(commands: Sequence[Command]) -> Iterator[Fact]:
+def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
     for command in commands:
         if command.name == "find_package" and command.arguments:
             package, *others = command.arguments
             version = next((other.text for other in others[:1] if _VERSION.fullmatch(other.text)), ANY_VERSION)
             value = version if "REQUIRED" in command.words or package.text == "catkin" else f"{version}, optional"
-            yield _fact(FactKind.PACKAGE, package, value)
+            yield _make_fact(FactKind.PACKAGE, package, value)
             start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(others)
             if package.text == "catkin":
                 start = 0  # the keyword can be left out
             for component in others[start:]:
                 if not component.text.isupper():  # a keyword, such as REQUIRED
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
-                    yield _fact(FactKind.PACKAGE, component, name=name)
+                    yield _make_fact(FactKind.PACKAGE, component, name=name)
 
 
-def _tests(commands: Sequence[Command]) -> Iterator[Fact]:
+def _read_tests(commands: Sequence[Command]) -> Iterator[Fact]:
     for command in commands:
         if _is_test(command):
             words = command.words
             index = words.index("NAME") + 1 if "NAME" in words[:-1] and command.name == "add_test" else 0
-            yield _fact(FactKind.TEST, command.arguments[index])
+            yield _make_fact(FactKind.TEST, command.arguments[index])
 
 
 def _is_test(command: Command) -> bool:
     return bool(command.arguments) and _TEST_COMMAND.fullmatch(command.name) is not None
 
 
-def _settings(commands: Sequence[Command]) -> Iterator[Fact]:
-    """Yield the settings that concern the whole build: versions of languages and of CMake, and options."""
+def _read_settings(commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the settings of the whole build: versions of languages and of CMake, and options."""
     for command in commands:
         words, arguments = command.words, command.arguments
         if command.name == "cmake_minimum_required" and len(words) > 1:
-            yield _fact(FactKind.SETTING, arguments[1], words[1], command.name)
+            yield _make_fact(FactKind.SETTING, arguments[1], words[1], command.name)
         elif command.name == "set" and len(words) > 1 and words[0] in _STANDARDS:
-            yield _fact(FactKind.SETTING, arguments[0], words[1])
+            yield _make_fact(FactKind.SETTING, arguments[0], words[1])
         elif command.name == "option" and words:
-            yield _fact(FactKind.SETTING, arguments[0], words[2] if len(words) > 2 else "OFF")
+            yield _make_fact(FactKind.SETTING, arguments[0], words[2] if len(words) > 2 else "OFF")
 
 
 _FACT_COMMANDS = frozenset(
@@ -392,4 +396,4 @@ _FACT_COMMANDS = frozenset(
         *("message", "project", "list", "unset", "install", "ament_package", "file", "string"),
     }
 )
-"""The commands whose content is compared as facts, or that change nothing for users."""
+"""The commands that are compared as facts, or that do not affect users."""

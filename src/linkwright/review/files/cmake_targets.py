@@ -1,4 +1,4 @@
-"""The libraries that are linked to the targets of a ``CMakeLists.txt``, and the sources of the targets."""
+"""Compare the linked libraries and the sources of the targets of a ``CMakeLists.txt``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.cmake_language import Argument, Command, within_package
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, TargetParts, listed, new_source
+from linkwright.review.files.build_facts import BuildFacts, TargetParts, list_names, new_source
 
 _SOURCE_COMMANDS = frozenset(
     {
@@ -43,16 +43,16 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
             if argument.text.isupper():
                 continue  # a keyword, such as PUBLIC
             if command.name in _LINK_COMMANDS:
-                parts.libraries.setdefault(_library(argument.text, command.name), _span(argument))
+                parts.libraries.setdefault(_library_name(argument.text, command.name), _argument_span(argument))
             elif not is_open(argument.text) and (
                 command.name not in _TEST_COMMANDS or _TEST_SOURCE.fullmatch(argument.text)
             ):
-                parts.sources.setdefault(within_package(argument.text, command.folder), _span(argument))
+                parts.sources.setdefault(within_package(argument.text, command.folder), _argument_span(argument))
     return targets
 
 
-def _library(text: str, command: str) -> str:
-    """Return the name of a library, or of the package to whose targets it belongs."""
+def _library_name(text: str, command: str) -> str:
+    """Return the name of a library, or of its package if it is a target of a package."""
     variable = _VARIABLE.fullmatch(text)
     if variable is not None:
         return variable[1]
@@ -61,12 +61,12 @@ def _library(text: str, command: str) -> str:
     return text if text.startswith("$<") else text.partition("::")[0]
 
 
-def _span(argument: Argument) -> Span:
+def _argument_span(argument: Argument) -> Span:
     return argument.source.span(argument.start, argument.end)
 
 
 def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Add the libraries and sources of targets in both versions that differ; equal changes of targets are one line."""
+    """Report the changed libraries and sources of targets. Equal changes of several targets are one line."""
     changes: dict[_Key, list[tuple[str, Span]]] = {}
     for name, parts in new.targets.items():
         before = old.targets.get(name)
@@ -74,25 +74,28 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             continue
         sources = {new_source(pair, old, new, item): span for item, span in before.sources.items()}
         if parts.is_test:
-            _compare_moved(pair, name, dict(zip(before.sources, sources, strict=False)), parts.sources)
+            _report_moved(pair, name, dict(zip(before.sources, sources, strict=False)), parts.sources)
         for kind, old_items, new_items in (
             ("libraries", before.libraries, parts.libraries),
             ("sources", sources, parts.sources if sources else {}),
         ):
             if kind == "sources" and not new_items:
-                continue  # not built any more
+                continue  # no longer built
             span = next(iter({**new_items, **old_items}.values()), None)
-            for is_added, items in ((True, _lone(new_items, old_items)), (False, _lone(old_items, new_items))):
+            for is_added, items in (
+                (True, _lone_names(new_items, old_items)),
+                (False, _lone_names(old_items, new_items)),
+            ):
                 if items and span is not None:
                     key = _Key(kind, is_added, tuple(items))
                     changes.setdefault(key, []).append((name, new_items.get(items[0], span)))
     for key, targets in changes.items():
-        text = _text(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
+        text = _change_text(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
         pair.add(text, pair.location(targets[0][1]))
 
 
-def _compare_moved(pair: FilePair, test: str, moved: Mapping[str, str], sources: Mapping[str, Span]) -> None:
-    """Add the sources of a test that have another path. No other line of a review names those of tests."""
+def _report_moved(pair: FilePair, test: str, moved: Mapping[str, str], sources: Mapping[str, Span]) -> None:
+    """Report the moved sources of a test. No other line of a review names the sources of tests."""
     for old_path, path in moved.items():
         if old_path != path and path in sources:
             text = phrase("source of '{target}' moved: '{old}' -> '{new}'", target=test, old=old_path, new=path)
@@ -100,19 +103,19 @@ def _compare_moved(pair: FilePair, test: str, moved: Mapping[str, str], sources:
 
 
 class _Key(NamedTuple):
-    """A change of targets: what differs, and the names that only one version has."""
+    """A change of targets: the kind of the parts, and the names that only one version has."""
 
     kind: str
     is_added: bool
     items: tuple[str, ...]
 
 
-def _lone(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:
+def _lone_names(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:
     return [item for item in items if item not in others]
 
 
-def _text(kind: str, targets: Sequence[str], items: Sequence[str], *, is_added: bool) -> Phrase:
-    names = {"targets": listed(targets), "names": listed(items)}
+def _change_text(kind: str, targets: Sequence[str], items: Sequence[str], *, is_added: bool) -> Phrase:
+    names = {"targets": list_names(targets), "names": list_names(items)}
     if kind == "libraries":
         if is_added:
             return phrase("{targets} linked to {names}", **names)

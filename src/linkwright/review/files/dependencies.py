@@ -1,4 +1,4 @@
-"""The comparison of the dependencies in manifests of packages."""
+"""Compare the dependencies in package manifests."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import EnvironmentVariables
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.xmltree import Element
 
 _VERSIONS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
 _EXPORTED = frozenset({"depend", "build_export_depend", "buildtool_export_depend"})
-"""The tags of dependencies that packages that depend on the package have, too, when they are built."""
+"""The tags of dependencies that dependents of the package also need to build."""
 _EXECUTION = frozenset({"depend", "exec_depend", "run_depend"})
 _VARIABLE = re.compile(r"\$(\w+)")
 
@@ -31,7 +31,7 @@ _Elements = Mapping[_Key, list[Element]]
 
 
 class _Edit(NamedTuple):
-    """A change of dependencies: their tags in both versions, and whether it is breaking."""
+    """A change of dependencies: their tags in both versions, and whether the change is breaking."""
 
     old_tags: str
     new_tags: str
@@ -39,37 +39,39 @@ class _Edit(NamedTuple):
 
 
 def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Add the changed dependencies: those with the same tags and effect in one line, and changed conditions."""
-    names = PackageNames(renamed_packages(pair.versions))
-    new_elements = _elements(new)
-    old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements(old).items()}
+    """Report changed dependencies and conditions, with the same change of several packages in one line."""
+    names = PackageNames(find_renamed_packages(pair.versions))
+    new_elements = _elements_by_key(new)
+    old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements_by_key(old).items()}
     edits: dict[_Edit, list[_Key]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
         before, after = (
             [key for key in elements if key.package == package] for elements in (old_elements, new_elements)
         )
-        gone, come = ([key for key in keys if key not in others] for keys, others in ((before, after), (after, before)))
-        if gone or come:
-            edit = _Edit(_tags(gone), _tags(come), _is_lost(before, after, old))
-            edits.setdefault(edit, []).append((come or gone)[0])
-        if not (gone and come):
+        removed, added = (
+            [key for key in keys if key not in others] for keys, others in ((before, after), (after, before))
+        )
+        if removed or added:
+            edit = _Edit(_tags_text(removed), _tags_text(added), _is_lost(before, after, old))
+            edits.setdefault(edit, []).append((added or removed)[0])
+        if not (removed and added):
             for key in (key for key in after if key in before):
                 _compare_conditions(pair, key, old_elements[key], new_elements[key])
-    for edit in sorted(edits, key=_order):
-        _add(pair, edit, edits[edit], new_elements if edit.new_tags else old_elements, _lost_reason(old))
+    for edit in sorted(edits, key=_sort_key):
+        _report(pair, edit, edits[edit], new_elements if edit.new_tags else old_elements, _lost_reason(old))
     old_variables, new_variables = (
-        EnvironmentVariables(_variables(elements)) for elements in (old_elements, new_elements)
+        EnvironmentVariables(_condition_variables(elements)) for elements in (old_elements, new_elements)
     )
     old_variables.compare(pair, new_variables)
 
 
-def _order(edit: _Edit) -> int:
-    """Return a number by which added dependencies are the first, and those with other tags the last."""
+def _sort_key(edit: _Edit) -> int:
+    """Return a sort key: added dependencies come first, dependencies with other tags last."""
     return 2 if edit.old_tags and edit.new_tags else 1 if edit.old_tags else 0
 
 
-def _add(pair: FilePair, edit: _Edit, keys: list[_Key], elements: _Elements, reason: Phrase) -> None:
-    """Add a change of dependencies, each with its condition."""
+def _report(pair: FilePair, edit: _Edit, keys: list[_Key], elements: _Elements, reason: Phrase) -> None:
+    """Report a change of dependencies with their conditions."""
     old_tags, new_tags, is_breaking = edit
     packages = ", ".join(_with_conditions(key.package, elements[key]) for key in keys)
     if not old_tags:
@@ -83,14 +85,14 @@ def _add(pair: FilePair, edit: _Edit, keys: list[_Key], elements: _Elements, rea
 
 
 def _with_conditions(package: str, elements: list[Element]) -> str:
-    conditions = _conditions(elements)
+    conditions = _conditions_text(elements)
     return f"{package} ({conditions})" if conditions else package
 
 
 def _is_lost(before: list[_Key], after: list[_Key], manifest: Manifest) -> bool:
-    """Return whether others do not get a package through this one any more.
+    """Return whether dependents no longer get a package through this one.
 
-    A dependency for execution is installed with the package, also where another package is built.
+    An execution dependency is installed with the package, also for building other packages.
 
     Args:
         before: the old dependencies on the package.
@@ -110,25 +112,25 @@ def _is_metapackage(manifest: Manifest) -> bool:
 
 
 def _lost_reason(manifest: Manifest) -> Phrase:
-    """Return why it is breaking that others do not get a package through this one any more."""
+    """Return the reason why it is breaking that dependents no longer get a package through this one."""
     if _is_metapackage(manifest):
         return phrase("installing the package does not install them any more")
     return phrase("packages that have them only through this package do not build")
 
 
-def _elements(manifest: Manifest) -> _Elements:
+def _elements_by_key(manifest: Manifest) -> _Elements:
     elements: dict[_Key, list[Element]] = {}
     for dependency in manifest.dependencies:
         elements.setdefault(_Key(dependency.tag, dependency.name), []).append(dependency.element)
     return elements
 
 
-def _tags(keys: list[_Key]) -> str:
+def _tags_text(keys: list[_Key]) -> str:
     return " + ".join(key.tag for key in keys)
 
 
 def _compare_conditions(pair: FilePair, key: _Key, old: list[Element], new: list[Element]) -> None:
-    old_text, new_text = _conditions(old), _conditions(new)
+    old_text, new_text = _conditions_text(old), _conditions_text(new)
     if old_text != new_text:
         always = phrase("always")
         text = phrase(
@@ -141,20 +143,20 @@ def _compare_conditions(pair: FilePair, key: _Key, old: list[Element], new: list
         pair.add(text, pair.location(new[0].span()))
 
 
-def _conditions(elements: list[Element]) -> str:
-    """Return when a package is a dependency: the conditions and versions of all its tags; empty for always."""
-    texts = [" ".join(_condition(element)) for element in elements]
+def _conditions_text(elements: list[Element]) -> str:
+    """Return the conditions and versions under which a package is a dependency; empty for always."""
+    texts = [" ".join(_condition_parts(element)) for element in elements]
     return "; ".join(texts) if all(texts) else ""
 
 
-def _condition(element: Element) -> Iterator[str]:
+def _condition_parts(element: Element) -> Iterator[str]:
     yield from (f"{sign} {element.attributes[name]}" for name, sign in _VERSIONS.items() if name in element.attributes)
     condition = " ".join(element.attributes.get("condition", "").split())
     if condition:
         yield f"if {condition}"
 
 
-def _variables(elements: _Elements) -> Iterator[tuple[str, Span | None]]:
+def _condition_variables(elements: _Elements) -> Iterator[tuple[str, Span | None]]:
     """Yield the environment variables in conditions, each with its location."""
     for element in (element for group in elements.values() for element in group):
         for name in _VARIABLE.findall(element.attributes.get("condition", "")):

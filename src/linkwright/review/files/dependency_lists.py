@@ -1,4 +1,4 @@
-"""The comparison of lists of repositories (vcstool, rosinstall) and of Python packages (pip)."""
+"""Compare lists of repositories (vcstool, rosinstall) and of Python packages (pip)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import yaml
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.yaml_values import composed, read_yaml_text
+from linkwright.review.files.yaml_values import compose_yaml, read_yaml_text
 from linkwright.review.list_changes import change_text
 from linkwright.review.versions import Version
 
@@ -28,11 +28,11 @@ _COMMENT = re.compile(r"(^|\s)#.*")
 
 @dataclass(frozen=True)
 class Entry:
-    """A repository, or a Python package.
+    """A repository or a Python package.
 
     Attributes:
         line: the line, starting at 1.
-        settings: its address, version and other settings by name.
+        settings: the address, version and other settings by name.
     """
 
     line: int
@@ -95,38 +95,41 @@ def _with_settings(text: Phrase, entry: Entry) -> Phrase:
 
 
 def read_repositories(file: Path) -> dict[str, Entry]:
-    """Return the repositories in a file of vcstool or rosinstall, by the folder into which they are cloned.
+    """Return the repositories in a file for vcstool or rosinstall, by the folder of the clone.
 
     Raises:
         UnreadableFileError: the text is not YAML, or too long.
     """
-    root = composed(read_yaml_text(file))
+    root = compose_yaml(read_yaml_text(file))
     if isinstance(root, yaml.SequenceNode):
-        return dict(entry for item in root.value for entry in _rosinstall_entry(item))
-    repositories = _mapping(root).get(_REPOSITORIES)
-    return {name: Entry(node.start_mark.line + 1, _settings(node)) for name, node in _mapping(repositories).items()}
+        return dict(entry for item in root.value for entry in _read_rosinstall_entry(item))
+    repositories = _read_mapping(root).get(_REPOSITORIES)
+    return {
+        name: Entry(node.start_mark.line + 1, _read_settings(node))
+        for name, node in _read_mapping(repositories).items()
+    }
 
 
-def _rosinstall_entry(node: yaml.Node) -> Iterator[tuple[str, Entry]]:
-    for kind, inner in _mapping(node).items():
-        settings = _settings(inner)
+def _read_rosinstall_entry(node: yaml.Node) -> Iterator[tuple[str, Entry]]:
+    for kind, inner in _read_mapping(node).items():
+        settings = _read_settings(inner)
         name = settings.pop(_LOCAL_NAME, None)
         if name is not None:
             values = {"type": kind, "url": settings.get(_ADDRESS, ""), "version": settings.get(_REVISION, "")}
             yield name, Entry(node.start_mark.line + 1, {key: value for key, value in values.items() if value})
 
 
-def _settings(node: yaml.Node) -> dict[str, str]:
-    values = _mapping(node).items()
+def _read_settings(node: yaml.Node) -> dict[str, str]:
+    values = _read_mapping(node).items()
     return {name: " ".join(str(value.value).split()) for name, value in values if isinstance(value, yaml.ScalarNode)}
 
 
-def _mapping(node: yaml.Node | None) -> dict[str, yaml.Node]:
+def _read_mapping(node: yaml.Node | None) -> dict[str, yaml.Node]:
     return {str(key.value): value for key, value in node.value} if isinstance(node, yaml.MappingNode) else {}
 
 
 def read_requirements(file: Path) -> dict[str, Entry]:
-    """Return the Python packages in a file for pip by name, each with its versions; other lines by their text.
+    """Return the Python packages in a requirements file by name, with their versions; other lines by their text.
 
     Raises:
         UnreadableFileError: the text is too long.

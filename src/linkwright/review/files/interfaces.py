@@ -1,4 +1,4 @@
-"""The comparison of the definitions of messages, services and actions."""
+"""Compare the definitions of messages, services and actions."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _SEPARATOR = "---"
 _MIN_RENUMBERED = 3
 """The minimum number of constants with other values that are summarized in one line. An inserted value renumbers those
 below."""
-_PARTS = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
-"""The names of the structures of a message, a service and an action, in front of the names of fields."""
+_PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
+"""The prefixes of field names: the structures of a message, a service and an action."""
 
 
 def compare_interfaces(pair: FilePair) -> None:
@@ -36,18 +36,18 @@ def compare_interfaces(pair: FilePair) -> None:
         return
     old, new = map(structures_of, definitions)
     is_ros1 = _is_ros1(pair.new_file)
-    for index, (old_part, new_part, name) in enumerate(zip(old, new, _PARTS[len(new)], strict=True)):
+    for index, (old_part, new_part, name) in enumerate(zip(old, new, _PART_PREFIXES[len(new)], strict=True)):
         places = _Places(pair, index)
         _compare_fields(pair, old_part.fields, new_part.fields, name, places)
         _compare_constants(pair, old_part.constants, new_part.constants, name, places, is_ros1=is_ros1)
 
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
-    """Return the fields of an interface with their types, and the constants with their values, or None for none."""
+    """Return the fields of an interface with types and the constants with values, or None if there are none."""
     parts = structures_of(_read(version.file(path)))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
-        for structure, part in zip(parts, _PARTS[len(parts)], strict=True)
+        for structure, part in zip(parts, _PART_PREFIXES[len(parts)], strict=True)
         for field in structure.fields
     ]
     names += [f"{constant.name} = {constant.value!s}" for structure in parts for constant in structure.constants]
@@ -65,7 +65,7 @@ def _read(file: Path) -> Definition:
 
 
 def _is_ros1(file: Path) -> bool:
-    """Return whether the package of an interface is one of ROS 1."""
+    """Return whether the package of an interface is a ROS 1 package."""
     package = enclosing_package(file.parent)
     if package is None:
         return (file.parent.parent / ROSBUILD_MANIFEST).is_file()
@@ -73,18 +73,18 @@ def _is_ros1(file: Path) -> bool:
 
 
 class _Places:
-    """The lines of the names in a structure of a definition.
+    """The locations of the names in a structure of a definition.
 
     Args:
         pair: both versions of the file.
-        index: the index of the structure: of the request and the response, for example.
+        index: the index of the structure, such as 0 for the request and 1 for the response.
     """
 
     def __init__(self, pair: FilePair, index: int) -> None:
         self._pair = pair
-        self._old, self._new = (_lines(file, index) for file in (pair.old_file, pair.new_file))
+        self._old, self._new = (_numbered_lines(file, index) for file in (pair.old_file, pair.new_file))
 
-    def of(self, name: str, *, is_old: bool = False) -> Location:
+    def location_of(self, name: str, *, is_old: bool = False) -> Location:
         """Return the location of a field or constant."""
         path, lines = (self._pair.old_path, self._old) if is_old else (self._pair.new_path, self._new)
         start = r".*\s" if path.endswith(".idl") else r"\s*[^#\s]\S*\s+"
@@ -96,8 +96,8 @@ class _Places:
         return Location(path, 1, 1, is_old)
 
 
-def _lines(file: Path, index: int) -> list[tuple[int, str]]:
-    """Return the numbered lines of a structure, or of the whole file if it is in IDL."""
+def _numbered_lines(file: Path, index: int) -> list[tuple[int, str]]:
+    """Return the numbered lines of a structure, or of the whole file if it is an IDL file."""
     lines = list(enumerate(read_source(file).text.splitlines(), 1))
     if file.suffix == ".idl":
         return lines
@@ -113,10 +113,10 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
         before, after = old_fields.get(name), new_fields.get(name)
         if before is None and after is not None:
             text = phrase("field '{name}' of type {type} added", name=part + name, type=after.type.to_msg_text())
-            pair.add(text, places.of(name), reason)
+            pair.add(text, places.location_of(name), reason)
         elif after is None:
             text = phrase("field '{name}' removed", name=part + name)
-            pair.add(text, places.of(name, is_old=True), reason)
+            pair.add(text, places.location_of(name, is_old=True), reason)
         elif before is not None and before.type != after.type:
             text = phrase(
                 "field '{name}': {old} -> {new}",
@@ -124,7 +124,7 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
                 old=before.type.to_msg_text(),
                 new=after.type.to_msg_text(),
             )
-            pair.add(text, places.of(name), reason)
+            pair.add(text, places.location_of(name), reason)
         elif before is not None and before.default != after.default:
             text = phrase(
                 "default of field '{name}': {old} -> {new}",
@@ -132,10 +132,10 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
                 old=str(before.default),
                 new=str(after.default),
             )
-            pair.add(text, places.of(name))
+            pair.add(text, places.location_of(name))
     common = [name for name in new_fields if name in old_fields]
     if common != [name for name in old_fields if name in new_fields]:
-        pair.add(phrase("order of the fields changed"), places.of(common[0]), reason)
+        pair.add(phrase("order of the fields changed"), places.location_of(common[0]), reason)
 
 
 def _exchange_reason() -> Phrase:
@@ -149,12 +149,12 @@ def _compare_constants(
     for name, value in new_values.items():
         if name not in old_values:
             text = phrase("constant '{name}' = {value} added", name=part + name, value=str(value))
-            pair.add(text, places.of(name), _exchange_reason() if is_ros1 else None)
+            pair.add(text, places.location_of(name), _exchange_reason() if is_ros1 else None)
     for name in old_values:
         if name not in new_values:
             reason = phrase("programs that use the constant do not build or start")
             text = phrase("constant '{name}' removed", name=part + name)
-            pair.add(text, places.of(name, is_old=True), reason)
+            pair.add(text, places.location_of(name, is_old=True), reason)
     changes = [
         (name, str(old_values[name]), str(value))
         for name, value in new_values.items()
@@ -164,8 +164,8 @@ def _compare_constants(
     if len(changes) < _MIN_RENUMBERED:
         for name, before, after in changes:
             text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=before, new=after)
-            pair.add(text, places.of(name), reason)
+            pair.add(text, places.location_of(name), reason)
         return
     items = ", ".join(f"{part}{name} {before} -> {after}" for name, before, after in changes)
     text = phrase("{count} constants have other values: {changes}", count=len(changes), changes=items)
-    pair.add(text, places.of(changes[0][0]), reason)
+    pair.add(text, places.location_of(changes[0][0]), reason)

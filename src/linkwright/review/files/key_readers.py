@@ -1,4 +1,4 @@
-"""Programs that did not change and read a key or a name that a YAML file does not have any more."""
+"""Find unchanged programs that read a removed key or name of a YAML file."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
-_PROGRAMS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
+_PROGRAM_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
 _SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
-_NAMES = re.compile(r"(^|[._])names?$")
-"""The keys of lists of names. Items of other lists, such as modes, are words that many programs use."""
+_NAME_PARAMETER = re.compile(r"(^|[._])names?$")
+"""The keys of lists of names. Other lists, such as modes, contain words that many programs use."""
 _NAME = re.compile(r"[A-Za-z_][\w/.-]{3,}")
 
 
@@ -34,9 +34,9 @@ class KeyReaders:
     path: str
 
     def key_reason(self, keys: Iterable[str]) -> Phrase | None:
-        """Return why it is breaking that keys are gone, or None if no unchanged program that names the file reads one.
+        """Return the reason why removing keys is breaking, or None if no unchanged program reads them from the file.
 
-        Only reading without a default is sure to fail, such as ``settings["rate"]``.
+        Only a read without a default certainly fails, such as ``settings["rate"]``.
         """
         for key in keys:
             pattern = re.compile(rf"(?<=[\w\])])\[\s*[\"']{re.escape(key)}[\"']\s*\]")
@@ -46,18 +46,20 @@ class KeyReaders:
         return None
 
     def name_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
-        """Return why it is breaking that names are gone from a list, or None if no unchanged source has one.
+        """Return the reason why removing names from a list is breaking, or None if no unchanged source contains one.
 
         Args:
             parameter: the path of the list.
             old: the old list.
             new: the new list.
         """
-        if not (old.is_list and new.is_list) or not _NAMES.search(parameter):
+        if not (old.is_list and new.is_list) or not _NAME_PARAMETER.search(parameter):
             return None
         kept = set(list_items(new.text))
-        gone = [item for item in list_items(old.text) if item not in kept and item != EMPTY and _NAME.fullmatch(item)]
-        for name in gone if self._is_named else ():
+        removed = [
+            item for item in list_items(old.text) if item not in kept and item != EMPTY and _NAME.fullmatch(item)
+        ]
+        for name in removed if self._is_named else ():
             pattern = re.compile(rf"[\"']{re.escape(name)}[\"']")
             reader = next((path for path, text in self._unchanged_sources if pattern.search(text)), None)
             if reader is not None:
@@ -66,19 +68,19 @@ class KeyReaders:
 
     @cached_property
     def _is_named(self) -> bool:
-        """Whether a program names the file."""
+        """Whether a program contains the name of the file."""
         name = PurePosixPath(self.path).name
-        return any(name in self.versions.new.text(path) for path in self._paths(_PROGRAMS, ()))
+        return any(name in self.versions.new.text(path) for path in self._paths(_PROGRAM_SUFFIXES, ()))
 
     @cached_property
     def _readers(self) -> list[tuple[str, str]]:
-        """The unchanged sources that name the file, with their texts."""
+        """The paths and texts of the unchanged sources that contain the name of the file."""
         name = PurePosixPath(self.path).name
         return [(path, text) for path, text in self._unchanged_sources if name in text]
 
     @cached_property
     def _unchanged_sources(self) -> list[tuple[str, str]]:
-        """The sources that did not change, with their texts without comments."""
+        """The paths and texts, without comments, of the unchanged sources."""
         changed = {file.new_path for file in self.versions.changed_files}
         paths = self._paths(_SOURCES, changed)
         return [(path, _COMMENT.sub(r"\1", self.versions.new.text(path))) for path in paths]

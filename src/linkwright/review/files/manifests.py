@@ -1,4 +1,4 @@
-"""The comparison of the manifests of packages (REP 149)."""
+"""Compare package manifests (REP 149)."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
-from linkwright.review.list_changes import excerpts
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.list_changes import differing_excerpts
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element, Text
 
-_TEXTS = ("name", "version", "license", "maintainer", "author", "url", "member_of_group", "group_depend")
+_TEXT_TAGS = ("name", "version", "license", "maintainer", "author", "url", "member_of_group", "group_depend")
 _PLUGIN = "plugin"
 """The attribute of an export that names a plugin description."""
-_BLOCKS = frozenset({"p", "br", "li", "ul", "ol", "div", "tr", "h1", "h2", "h3"})
+_BLOCK_TAGS = frozenset({"p", "br", "li", "ul", "ol", "div", "tr", "h1", "h2", "h3"})
 """The tags of XHTML after which a new line begins."""
 
 
@@ -44,7 +44,7 @@ def compare_manifests(pair: FilePair) -> None:
 
 
 def manifest_contents(version: Version, path: str) -> Phrase:
-    """Return the name, version, build type and dependencies of a package, and another package with its name."""
+    """Return the name, version, build type and dependencies, and the folder of a package with the same name."""
     manifest = _read(version.file(path))
     export = manifest.root.first("export")
     is_metapackage = export is not None and export.first("metapackage") is not None
@@ -65,8 +65,8 @@ def manifest_contents(version: Version, path: str) -> Phrase:
 
 def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
     manifests = old, new
-    for tag in _TEXTS:
-        old_text, new_text = (_texts(manifest, tag) for manifest in manifests)
+    for tag in _TEXT_TAGS:
+        old_text, new_text = (_joined_text(manifest, tag) for manifest in manifests)
         if old_text != new_text:
             text = phrase("{tag}: {old} -> {new}", tag=tag, old=old_text or "-", new=new_text or "-")
             if tag == "name":
@@ -75,40 +75,40 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
             element = new.root.first(tag) or new.root
             pair.add(text, pair.location(element.span()), reason if tag == "name" else None)
     for tag in ("maintainer", "author"):
-        old_addresses, new_addresses = (_addresses(manifest, tag) for manifest in manifests)
-        if old_addresses != new_addresses and _texts(old, tag) == _texts(new, tag):
+        old_addresses, new_addresses = (_joined_addresses(manifest, tag) for manifest in manifests)
+        if old_addresses != new_addresses and _joined_text(old, tag) == _joined_text(new, tag):
             text = phrase("email of {tag}: {old} -> {new}", tag=tag, old=old_addresses or "-", new=new_addresses or "-")
             pair.add(text, pair.location((new.root.first(tag) or new.root).span()))
     _compare_descriptions(pair, old, new)
 
 
 def _compare_descriptions(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Add the changed description as text, or that only its markup differs."""
+    """Report the changed description as text, or the change of its markup."""
     elements = [manifest.root.first("description") for manifest in (old, new)]
     old_text, new_text = ("" if element is None else _plain_text(element) for element in elements)
     location = pair.location((elements[1] or new.root).span())
     if old_text != new_text:
-        before, after = excerpts(old_text, new_text)
+        before, after = differing_excerpts(old_text, new_text)
         pair.add(phrase("description: {old} -> {new}", old=before or "-", new=after or "-"), location)
-    elif _markup(elements[0]) != _markup(elements[1]):
+    elif _read_markup(elements[0]) != _read_markup(elements[1]):
         pair.add(phrase("markup of the description changed"), location)
 
 
 def _plain_text(element: Element) -> str:
-    """Return the texts of an element and of those in it, in their order, without markup."""
-    return " ".join("".join(_texts_in(element)).split())
+    """Return the text of an element without markup."""
+    return " ".join("".join(_iterate_texts(element)).split())
 
 
-def _texts_in(element: Element) -> Iterator[str]:
+def _iterate_texts(element: Element) -> Iterator[str]:
     for child in element.children:
         if isinstance(child, Element):
-            yield from _texts_in(child)
-            yield " " if child.tag in _BLOCKS else ""
+            yield from _iterate_texts(child)
+            yield " " if child.tag in _BLOCK_TAGS else ""
         elif isinstance(child, Text):
             yield child.data
 
 
-def _markup(element: Element | None) -> list[Hashable]:
+def _read_markup(element: Element | None) -> list[Hashable]:
     """Return the tags and attributes of the elements in a description."""
     parts = () if element is None else element.walk()
     return [(part.tag, tuple(sorted(part.attributes.items()))) for part in parts if part is not element]
@@ -118,37 +118,39 @@ def _read(file: Path) -> Manifest:
     return Manifest(read_document(str(file)))
 
 
-def _texts(manifest: Manifest, tag: str) -> str:
+def _joined_text(manifest: Manifest, tag: str) -> str:
     return ", ".join(" ".join(element.text().split()) for element in manifest.root.elements(tag))
 
 
-def _addresses(manifest: Manifest, tag: str) -> str:
+def _joined_addresses(manifest: Manifest, tag: str) -> str:
     return ", ".join(element.attributes.get("email", "") for element in manifest.root.elements(tag))
 
 
 def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Add the changes of the information for other packages, such as where plugin descriptions are."""
-    old_exports, new_exports = ({_export_text(element): element for element in _exports(each)} for each in (old, new))
-    names = PackageNames(renamed_packages(pair.versions))
-    gone = [element for text, element in old_exports.items() if text not in new_exports]
-    come = [element for text, element in new_exports.items() if text not in old_exports]
-    for element in list(gone):
-        other = next((other for other in come if other.tag == names.of_package(element.tag)), None)
-        if other is not None:
-            gone.remove(element)
-            come.remove(other)
-            _compare_attributes(pair, element, other)
-    for element in come:
+    """Report added, removed and changed ``<export>`` elements, such as the paths of plugin descriptions."""
+    old_exports, new_exports = (
+        {_export_text(element): element for element in _read_exports(manifest)} for manifest in (old, new)
+    )
+    names = PackageNames(find_renamed_packages(pair.versions))
+    removed = [element for text, element in old_exports.items() if text not in new_exports]
+    added = [element for text, element in new_exports.items() if text not in old_exports]
+    for element in list(removed):
+        successor = next((successor for successor in added if successor.tag == names.of_package(element.tag)), None)
+        if successor is not None:
+            removed.remove(element)
+            added.remove(successor)
+            _compare_attributes(pair, element, successor)
+    for element in added:
         pair.add(phrase("export added: {export}", export=_export_text(element)), pair.location(element.span()))
-    for element in gone:
-        is_there = any(_offers_same(element, other) for other in new_exports.values())
-        reason = None if is_there else _export_reason(element)
+    for element in removed:
+        is_replaced = any(_have_same_purpose(element, other) for other in new_exports.values())
+        reason = None if is_replaced else _export_reason(element)
         location = pair.location(element.span(), is_old=True)
         pair.add(phrase("export removed: {export}", export=_export_text(element)), location, reason)
 
 
 def _compare_attributes(pair: FilePair, old: Element, new: Element) -> None:
-    """Add the changed attributes and text of an export."""
+    """Report the changed attributes and text of an export."""
     location = pair.location(new.span())
     for name in dict.fromkeys((*new.attributes, *old.attributes)):
         before, after = old.attributes.get(name), new.attributes.get(name)
@@ -169,7 +171,7 @@ def _compare_attributes(pair: FilePair, old: Element, new: Element) -> None:
         pair.add(text, location)
 
 
-def _exports(manifest: Manifest) -> list[Element]:
+def _read_exports(manifest: Manifest) -> list[Element]:
     export = manifest.root.first("export")
     return [] if export is None else [element for element in export.elements() if element.tag != "build_type"]
 
@@ -179,13 +181,13 @@ def _export_text(element: Element) -> str:
     return " ".join([*words, *element.text().split()])
 
 
-def _offers_same(old: Element, new: Element) -> bool:
-    """Return whether two exports offer plugins or folders to the same package."""
+def _have_same_purpose(old: Element, new: Element) -> bool:
+    """Return whether two exports declare plugins or folders for the same package."""
     return old.tag == new.tag and set(old.attributes) <= set(new.attributes)
 
 
 def _export_reason(element: Element) -> Phrase | None:
-    """Return why a removed export is breaking, or None if it is not."""
+    """Return the reason why removing an export is breaking, or None if it is not."""
     if _PLUGIN in element.attributes:
         return phrase("programs that look for plugins of '{name}' do not find these", name=element.tag)
     if element.tag.startswith("gazebo"):

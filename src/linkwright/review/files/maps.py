@@ -1,4 +1,4 @@
-"""The comparison of maps: the settings in YAML, the size, and the cells of the image that changed."""
+"""Compare maps: the settings in YAML, the size, and the changed cells of the image."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from linkwright.review.list_changes import change_text
 from linkwright.review.versions import Version
 
 IMAGE_SUFFIXES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".gif")
-"""The ends of the names of files that can be the image of a map."""
-_KEYS = tuple(re.compile(rf"^{key}\s*:", re.MULTILINE) for key in ("image", "resolution", "origin"))
+"""The name endings of files that can be the image of a map."""
+_KEY_PATTERNS = tuple(re.compile(rf"^{key}\s*:", re.MULTILINE) for key in ("image", "resolution", "origin"))
 _MAX_BYTES = 100_000
 _MAX_FILES = 100
-"""The number of YAML files in a folder that are searched for the one of an image."""
+"""The maximum number of YAML files in a folder that are searched for the map of an image."""
 
 
 def is_map(file: Path) -> bool:
@@ -33,17 +33,21 @@ def is_map(file: Path) -> bool:
         text = file.read_text("utf-8", errors="replace")
     except OSError:
         return False
-    return all(key.search(text) for key in _KEYS)
+    return all(key.search(text) for key in _KEY_PATTERNS)
 
 
 def map_of_image(version: Version, path: str) -> str | None:
-    """Return the path of the YAML file beside an image that describes it as a map, or None if there is none."""
+    """Return the path of the map YAML file for an image in the same folder, or None if there is none."""
     file = version.file(path)
     if PurePosixPath(path).suffix.lower() not in IMAGE_SUFFIXES:
         return None
-    for other in sorted(file.parent.glob("*.y*ml"))[:_MAX_FILES]:
-        if is_map(other) and _map_yaml(other) is not None and read_map_yaml(other).image.name == file.name:
-            return version.relative(other)
+    for yaml_file in sorted(file.parent.glob("*.y*ml"))[:_MAX_FILES]:
+        if (
+            is_map(yaml_file)
+            and _try_read_map_yaml(yaml_file) is not None
+            and read_map_yaml(yaml_file).image.name == file.name
+        ):
+            return version.relative(yaml_file)
     return None
 
 
@@ -51,13 +55,13 @@ def map_contents(version: Version, path: str) -> Phrase | None:
     """Return the image, size, resolution and origin of a map.
 
     Raises:
-        LinkwrightError: the YAML file is not that of a map.
+        LinkwrightError: the YAML file does not describe a map.
     """
     content = read_map_yaml(version.file(path))
-    size = _size(content)
+    size = _size_text(content)
     parts: list[Phrase | str] = [content.image.name, *([size] if size else [])]
     parts.append(phrase("resolution {resolution} m", resolution=f"{content.resolution:g}"))
-    parts.append(phrase("origin {origin}", origin=_numbers(content.origin)))
+    parts.append(phrase("origin {origin}", origin=_format_numbers(content.origin)))
     return joined(parts)
 
 
@@ -66,41 +70,41 @@ def compare_map_files(pair: FilePair) -> None:
     maps = pair.read(read_map_yaml)
     if maps is None:
         return
-    for name, old_text, new_text in _settings(*maps):
+    for name, old_text, new_text in _changed_settings(*maps):
         if old_text != new_text:
             pair.add(change_text(name, old_text, new_text), None)
-    old_size, new_size = (_size(content) for content in maps)
+    old_size, new_size = (_size_text(content) for content in maps)
     if old_size and new_size and str(old_size) != str(new_size):
         pair.figures.append(Figure(phrase("size of the map"), str(old_size), str(new_size)))
-    old_image, new_image = (_readable_shade(content.image) for content in maps)
+    old_image, new_image = (_try_read_shade(content.image) for content in maps)
     if old_image is not None and new_image is not None and old_image.shape == new_image.shape:
         _compare_cells(pair, old_image, new_image)
 
 
-def _settings(old: MapYaml, new: MapYaml) -> Iterator[tuple[str, str, str]]:
+def _changed_settings(old: MapYaml, new: MapYaml) -> Iterator[tuple[str, str, str]]:
     yield "image", old.image.name, new.image.name
     yield "resolution", f"{old.resolution:g} m", f"{new.resolution:g} m"
-    yield "origin", _numbers(old.origin), _numbers(new.origin)
+    yield "origin", _format_numbers(old.origin), _format_numbers(new.origin)
     yield "negate", str(old.negate).lower(), str(new.negate).lower()
     yield "occupied_thresh", f"{old.occupied_thresh:g}", f"{new.occupied_thresh:g}"
     yield "free_thresh", f"{old.free_thresh:g}", f"{new.free_thresh:g}"
     yield "mode", old.mode.value, new.mode.value
 
 
-def _numbers(values: tuple[float, ...]) -> str:
+def _format_numbers(values: tuple[float, ...]) -> str:
     return " ".join(f"{value:g}" for value in values)
 
 
-def _map_yaml(file: Path) -> MapYaml | None:
+def _try_read_map_yaml(file: Path) -> MapYaml | None:
     try:
         return read_map_yaml(file)
     except LinkwrightError:
         return None
 
 
-def _size(content: MapYaml) -> Phrase | None:
+def _size_text(content: MapYaml) -> Phrase | None:
     """Return the size of a map in cells and in meters, or None if its image cannot be read."""
-    image = _readable_shade(content.image)
+    image = _try_read_shade(content.image)
     if image is None:
         return None
     rows, columns = image.shape
@@ -112,7 +116,7 @@ def _size(content: MapYaml) -> Phrase | None:
 
 def compare_maps(pair: FilePair) -> None:
     """Compare two versions of an image that no YAML file describes as a map, cell by cell."""
-    images = pair.read(_shade)
+    images = pair.read(_read_shade)
     if images is None:
         return
     old, new = images
@@ -125,7 +129,7 @@ def compare_maps(pair: FilePair) -> None:
 
 
 def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.float64]) -> bool:
-    """Add the share and place of the cells that differ, and return whether there are any."""
+    """Report the share and place of the cells that differ, and return whether there are any."""
     rows, columns = np.nonzero(old != new)
     if not len(rows):
         return False
@@ -141,14 +145,14 @@ def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.flo
     return True
 
 
-def _readable_shade(file: Path) -> NDArray[np.float64] | None:
-    """Return the brightness of the cells, or None for an image that cannot be read, such as a pointer of Git LFS."""
+def _try_read_shade(file: Path) -> NDArray[np.float64] | None:
+    """Return the brightness of the cells, or None if the image cannot be read, such as a Git LFS pointer."""
     try:
-        return _shade(file)
+        return _read_shade(file)
     except (LinkwrightError, OSError):
         return None
 
 
-def _shade(file: Path) -> NDArray[np.float64]:
+def _read_shade(file: Path) -> NDArray[np.float64]:
     """Return the brightness of the cells, shape (rows, columns)."""
     return read_image(file).shade

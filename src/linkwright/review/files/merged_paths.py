@@ -1,11 +1,11 @@
-"""Equal changes of several elements in one: paths that differ in one word."""
+"""Merge equal changes of several elements whose paths differ in one word."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 
 _MAX_WORDS = 3
-"""The number of different words that are shown."""
+"""The maximum number of differing words that are shown."""
 
 
 class MergedPaths:
@@ -18,11 +18,11 @@ class MergedPaths:
         self._groups: dict[tuple[tuple[str, ...], int, Hashable], int] = {}
 
     def add(self, path: str, change: Hashable) -> int:
-        """Return the number of the group to which a path belongs, which is the next number for a new group.
+        """Add a path, and return the index of its group.
 
         Args:
-            path: the path.
-            change: what is equal in the changes of a group.
+            path: the path of the changed element.
+            change: a key that is equal for all changes of a group.
         """
         words = path.split(" ")
         patterns = [((*words[:place], "", *words[place + 1 :]), place, change) for place in range(len(words))]
@@ -42,7 +42,7 @@ class MergedPaths:
 
     @property
     def paths(self) -> Sequence[str]:
-        """The first path of each group, with the words of the others at the place where they differ."""
+        """The first path of each group, with the differing words of the other paths at the same place."""
         return [self._path(*parts) for parts in zip(self._words, self._places, self._others, strict=True)]
 
     def _path(self, words: Sequence[str], place: int | None, others: Sequence[str]) -> str:
@@ -62,7 +62,7 @@ _NAMED = frozenset(
 
 
 def path_pattern(path: str) -> tuple[str, ...]:
-    """Return the words of a path, in which the names of elements are empty.
+    """Return the words of a path, with empty strings for the names of elements.
 
     Equal changes with equal patterns belong together, such as of the visuals of all links.
     """
@@ -75,7 +75,7 @@ def path_pattern(path: str) -> tuple[str, ...]:
 
 
 def differing_parts(paths: Sequence[str]) -> list[str]:
-    """Return paths of the same number of words without the words that all of them begin or end with."""
+    """Return paths of equal length without their common first and last words."""
     rows = [path.split(" ") for path in paths]
     columns = list(zip(*rows, strict=True))
     places = [place for place, words in enumerate(columns) if len(set(words)) > 1]

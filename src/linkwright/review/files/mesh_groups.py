@@ -1,4 +1,4 @@
-"""Meshes that are added, removed or renamed together, as one subject."""
+"""Group meshes that are added, removed or renamed together."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from linkwright.diagnostics import Phrase, counted, joined_first
 from linkwright.review.changes import MAX_NAMES, Change, Subject, SubjectKind
 
 
-def grouped_meshes(subjects: Sequence[Subject]) -> list[Subject]:
-    """Return the subjects, with one for several meshes of a folder that are added, removed or renamed together."""
+def group_meshes(subjects: Sequence[Subject]) -> list[Subject]:
+    """Return the subjects, with meshes of a folder that are added, removed or renamed together as one subject."""
     groups: dict[Hashable, list[Subject]] = {}
     for number, subject in enumerate(subjects):
-        groups.setdefault(_key(subject) or number, []).append(subject)
-    return [group[0] if len(group) == 1 else _as_one(group) for group in groups.values()]
+        groups.setdefault(_group_key(subject) or number, []).append(subject)
+    return [group[0] if len(group) == 1 else _join_subjects(group) for group in groups.values()]
 
 
-def _key(subject: Subject) -> Hashable | None:
-    """Return what several subjects must have in common to be one, or None for a subject that stays alone."""
+def _group_key(subject: Subject) -> Hashable | None:
+    """Return the key by which subjects are grouped, or None for a subject that stays alone."""
     if subject.kind is not SubjectKind.MESH or len(subject.changes) != 1 or subject.figures or subject.problems:
         return None
     paths = subject.old_path, subject.new_path
@@ -28,14 +28,14 @@ def _key(subject: Subject) -> Hashable | None:
     return (*(None if path is None else PurePosixPath(path).parent for path in paths), subject.changes[0].effect)
 
 
-def _as_one(subjects: Sequence[Subject]) -> Subject:
+def _join_subjects(subjects: Sequence[Subject]) -> Subject:
     first = subjects[0]
     change: Change = first.changes[0]
     folder = f"{PurePosixPath(first.path).parent}/"
-    return replace(first, path=folder, changes=[replace(change, sentence=_sentence(subjects))])
+    return replace(first, path=folder, changes=[replace(change, sentence=_group_sentence(subjects))])
 
 
-def _sentence(subjects: Sequence[Subject]) -> Phrase:
+def _group_sentence(subjects: Sequence[Subject]) -> Phrase:
     count, names = len(subjects), joined_first((PurePosixPath(subject.path).name for subject in subjects), MAX_NAMES)
     first = subjects[0]
     if first.old_path is None:
@@ -51,10 +51,10 @@ def _sentence(subjects: Sequence[Subject]) -> Phrase:
             folder=f"{old_folder}/",
             names=names,
         )
-    pairs = joined_first(_renames(subjects), MAX_NAMES)
+    pairs = joined_first(_rename_texts(subjects), MAX_NAMES)
     return counted("{count} mesh renamed: {names}", "{count} meshes renamed: {names}", count, names=pairs)
 
 
-def _renames(subjects: Sequence[Subject]) -> Iterator[str]:
+def _rename_texts(subjects: Sequence[Subject]) -> Iterator[str]:
     for subject in subjects:
         yield f"{PurePosixPath(subject.old_path or '').name} -> {PurePosixPath(subject.path).name}"

@@ -1,4 +1,4 @@
-"""The comparison of mesh files: bytes, triangles and size."""
+"""Compare mesh files: bytes, triangles and size."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.versions import Version
 
 _MAX_BYTES = 100 << 20
-"""Larger meshes are compared by their sizes in bytes only."""
+"""The maximum size in bytes of compared meshes. Of larger meshes, only the sizes are compared."""
 _MAX_CONTENT_BYTES = 10 << 20
-"""Larger meshes of one version are named without their contents: a commit can add hundreds."""
+"""The maximum size in bytes of added meshes whose contents are shown. A commit can add hundreds of meshes."""
 _TOLERANCE = 1e-6
 
 

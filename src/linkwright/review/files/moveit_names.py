@@ -1,4 +1,4 @@
-"""The names in parameter files of MoveIt that other programs use: controllers, planners and joints with limits."""
+"""Check shared names in parameter files of MoveIt: controllers, planners and joints with limits."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ACTION = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.action_ns")
 
 
 class MoveItRules:
-    """The rules for breaking changes of a parameter file of MoveIt.
+    """Decides which changes of a MoveIt parameter file are breaking.
 
     Args:
         old: the old values by path, without the new names of renamed parts.
@@ -44,9 +44,9 @@ class MoveItRules:
         self._old_planners = {match["name"] for part in parts if (match := _PLANNER.fullmatch(part))}
 
     def change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
-        """Return why a changed value is breaking, or None if it is not.
+        """Return the reason why a changed value is breaking, or None if it is not.
 
-        A planner whose settings are gone, too, is a change of these settings.
+        A planner that lost its settings, too, is reported with the settings.
         """
         action = _ACTION.fullmatch(parameter)
         if action is not None and old.text and not may_be(new.text, old.text):
@@ -55,36 +55,38 @@ class MoveItRules:
         if not _PLANNERS.fullmatch(parameter) or not old.is_list:
             return None
         items = list_items(new.text)
-        gone = {name for name in list_items(old.text) if name and not any(may_be(each, name) for each in items)}
-        gone -= {*items, *(self._old_planners - self._names[_PLANNER])}
-        return _planner_reason(", ".join(sorted(gone))) if gone else None
+        removed = {name for name in list_items(old.text) if name and not any(may_be(item, name) for item in items)}
+        removed -= {*items, *(self._old_planners - self._names[_PLANNER])}
+        return _planner_reason(", ".join(sorted(removed))) if removed else None
 
     def removal_reason(self, parameter: str) -> Phrase | None:
-        """Return why a removed parameter is breaking, or None if it is not."""
+        """Return the reason why removing a parameter is breaking, or None if it is not."""
         for part in part_names(parameter):
             for pattern, reason in ((_CONTROLLER, controller_reason), (_PLANNER, _planner_reason)):
                 match = pattern.fullmatch(part)
-                if match is not None and self._is_gone(pattern, match["name"]):
+                if match is not None and self._is_removed(pattern, match["name"]):
                     return reason(match["name"])
         return None
 
     def renaming_reason(self, part: str) -> Phrase | None:
-        """Return why it is breaking to rename or move a part of the old file, or None if it is not."""
+        """Return the reason why renaming or moving a part of the old file is breaking, or None if it is not."""
         joint = _LIMITED_JOINT.fullmatch(part)
         if joint is None:
             return self.removal_reason(part)
         has_limits = any(
             name.startswith(f"{part}.") and _LIMIT.fullmatch(name.removeprefix(f"{part}.")) for name in self._old
         )
-        return joint_name_reason(joint["name"]) if has_limits and self._is_gone(_LIMITED_JOINT, joint["name"]) else None
+        return (
+            joint_name_reason(joint["name"]) if has_limits and self._is_removed(_LIMITED_JOINT, joint["name"]) else None
+        )
 
-    def _is_gone(self, pattern: re.Pattern[str], name: str) -> bool:
-        """Return whether the new file has parts of a kind, but none with a name or a substitution that can be it.
+    def _is_removed(self, pattern: re.Pattern[str], name: str) -> bool:
+        """Return whether the new file has parts of a kind, but none that can have the name.
 
-        A list that is gone as a whole can be in another file or form.
+        A list that was removed as a whole may be in another file or form.
         """
         names = self._names[pattern]
-        return bool(names) and name not in names and not any(may_be(each, name) for each in names)
+        return bool(names) and name not in names and not any(may_be(new_name, name) for new_name in names)
 
 
 def _planner_reason(name: str) -> Phrase:

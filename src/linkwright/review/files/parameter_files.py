@@ -1,4 +1,4 @@
-"""The comparison of YAML files: parameters of nodes and controllers, and settings that launch files read."""
+"""Compare YAML files: parameters of nodes and controllers, and settings that launch files read."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from linkwright.review.files.parameter_names import (
     part_names,
     renaming_reason,
 )
-from linkwright.review.files.renamed_parts import edit_of, parent_of, renamed_parts, with_new_parts
-from linkwright.review.files.value_changes import ValueChange, merged_values
+from linkwright.review.files.renamed_parts import edit_of, find_renamed_parts, parent_of, with_new_parts
+from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import with_includes
 from linkwright.review.files.yaml_lists import item_labels
-from linkwright.review.files.yaml_values import YamlType, YamlValue, composed, read_yaml_text, yaml_values
-from linkwright.review.list_changes import shortened
+from linkwright.review.files.yaml_values import YamlType, YamlValue, compose_yaml, read_yaml_text, yaml_values
+from linkwright.review.list_changes import shorten
 from linkwright.review.merging import common_reason
 from linkwright.review.versions import Version
 
 _MAX_VALUES = 32
-"""The number of values that the line about an added file shows, divided among the nodes or keys."""
+"""The maximum number of values in the line about an added file, divided among the nodes or keys."""
 _MIN_VALUES = 3
 _MAX_VALUE = 60
 _NAMES_OF_ITEMS = ("name", "id")
@@ -48,22 +48,22 @@ def compare_parameter_files(pair: FilePair) -> None:
     if all(bridges):
         compare_bridges(pair, *bridges)
         return
-    roots = pair.read(lambda file: _root(texts[file == pair.new_file]))
+    roots = pair.read(lambda file: _compose_root(texts[file == pair.new_file]))
     if roots is None:
         return
     old, new = roots
     if old is not None and new is not None:
         old, new = with_includes(pair, old, new)
-    pair.changes += merged_values(_changes(pair, old, new))
+    pair.changes += merge_values(_find_changes(pair, old, new))
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
-    """Return the parameters of nodes, or the top-level keys of other files, with their values; None for others."""
+    """Return the parameters of nodes, or the top-level keys of other files, with values; None if there are none."""
     text = read_yaml_text(version.file(path))
     bridges = read_bridges(text)
     if bridges:
         return phrase("bridged topics {names}", names=joined_first([bridge.topic for bridge in bridges], MAX_NAMES))
-    root = _root(text)
+    root = _compose_root(text)
     if not isinstance(root, yaml.MappingNode):
         return None
     values = yaml_values(root, {})
@@ -80,11 +80,11 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
 
 
 def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
-    """Return the names of nodes or keys with the first of their values."""
+    """Return the names of nodes or keys with their first values."""
     limit = max(_MIN_VALUES, _MAX_VALUES // len(parts))
     texts: list[Phrase] = []
     for part, values in parts.items():
-        items = [shortened(item, _MAX_VALUE) for item in _lone_content(part, values)]
+        items = [shorten(item, _MAX_VALUE) for item in _lone_content(part, values)]
         if part in values:
             texts.append(phrase("{parameter} {value}", parameter=part, value=items[0]))
         else:
@@ -92,26 +92,26 @@ def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     return joined_first(texts, MAX_NAMES)
 
 
-def _root(text: str) -> yaml.Node | None:
-    """Return a document that has no more values than a parameter file.
+def _compose_root(text: str) -> yaml.Node | None:
+    """Return the root of a YAML document with at most as many values as a parameter file.
 
     Raises:
         UnreadableFileError: the text is not YAML, or has too many values.
     """
-    root = composed(text)
+    root = compose_yaml(text)
     if root is not None:
         yaml_values(root, {})
     return root
 
 
-def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | None) -> Iterator[ValueChange]:
+def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | None) -> Iterator[ValueChange]:
     labels = item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else yaml_values(root, labels) for root in (old_root, new_root))
     moveit = MoveItRules(old_values, new)
-    old = _with_new_names(pair, old_values, new, moveit)
+    old = _report_renamed(pair, old_values, new, moveit)
     rules = NameRules(old, new)
     readers = KeyReaders(pair.versions, pair.new_path)
-    new_keys = frozenset(_key(part) for name in new for part in part_names(name))
+    new_keys = frozenset(_last_key(part) for name in new for part in part_names(name))
     for name, value in new.items():
         old_value = old.get(name)
         if (
@@ -132,8 +132,8 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)
         reasons = (
-            moveit.removal_reason(each) or rules.removal_reason(each, value.text)
-            for each, value in values_below.items()
+            moveit.removal_reason(inner_name) or rules.removal_reason(inner_name, value.text)
+            for inner_name, value in values_below.items()
         )
         reason = next((reason for reason in reasons if reason is not None), None)
         reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new_keys))
@@ -141,7 +141,7 @@ def _changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | N
 
 
 def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
-    """Return the texts of two values, with quotes if only these tell them apart."""
+    """Return the texts of two values, quoted if they differ only in their quotes."""
     if old.shown != new.shown:
         return old.shown, new.shown
     old_text, new_text = (f'"{value.text}"' if value.type is YamlType.TEXT else value.text for value in (old, new))
@@ -149,7 +149,7 @@ def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
 
 
 def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
-    """Return the value of a part that is one, or the names and values in a part."""
+    """Return the value of a part that is a single value, or the names and values inside a part."""
     if part in values:
         return (values[part].shown,)
     names = {name: name.removeprefix(part).lstrip(".").removeprefix("ros__parameters.") for name in values}
@@ -157,20 +157,20 @@ def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]
 
 
 def _is_label(name: str, value: YamlValue) -> bool:
-    """Return whether a value is the name of an item of a list, which is the label of the item in the path."""
+    """Return whether a value is the name of a list item, which labels the item in paths."""
     item, _, key = name.rpartition(".")
     return key in _NAMES_OF_ITEMS and item.endswith(f"[{value.text}]")
 
 
 def _is_new_label(name: str, old: YamlValue, new: YamlValue) -> bool:
-    """Return whether a changed value is the name of an item of a list whose path is renamed with it."""
+    """Return whether a changed value is the name of a list item, so that the path of the item changes with it."""
     return old.text != new.text and _is_label(name, new)
 
 
 def _lone_parts(
     values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]
 ) -> Iterator[tuple[str, dict[str, YamlValue]]]:
-    """Yield the parts of a file that another version does not have, as large as possible, with their values."""
+    """Yield the largest parts of a file that the other version lacks, with their values."""
     other_parts = {part for name in others for part in part_names(name)}
     parts: dict[str, dict[str, YamlValue]] = {}
     for name, value in values.items():
@@ -182,13 +182,13 @@ def _lone_parts(
 
 
 def _lost_keys(name: str, new_keys: Collection[str]) -> list[str]:
-    """Return the keys on the path of a value that the new version has nowhere; none for a parameter of a node."""
+    """Return the keys in the path of a value that the new version lacks; empty for a node parameter."""
     if is_parameter(name):
         return []  # nodes declare their parameters with defaults
-    return [key for key in map(_key, part_names(name)) if key not in new_keys and "[" not in key]
+    return [key for key in map(_last_key, part_names(name)) if key not in new_keys and "[" not in key]
 
 
-def _key(part: str) -> str:
+def _last_key(part: str) -> str:
     return part.rpartition(".")[2]
 
 
@@ -196,11 +196,11 @@ def _is_below(name: str, part: str) -> bool:
     return name == part or name.startswith((f"{part}.", f"{part}["))
 
 
-def _with_new_names(
+def _report_renamed(
     pair: FilePair, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], moveit: MoveItRules
 ) -> Mapping[str, YamlValue]:
-    """Add the renamed and moved parts of a file, and return the old values with the new names of these parts."""
-    renamed = renamed_parts(old, new)
+    """Report renamed and moved parts of a file, and return the old values with the new names."""
+    renamed = find_renamed_parts(old, new)
     groups: dict[Hashable, list[Change]] = {}
     for old_part, new_part in renamed.items():
         inside = next(value for name, value in new.items() if _is_below(name, new_part))
@@ -213,8 +213,8 @@ def _with_new_names(
         kind = None if reason is None else reason.template
         groups.setdefault((edit_of(old_part, new_part), kind), []).append(change)
     for first, *others in groups.values():
-        names = tuple(f"{each.sentence.arguments['old']} -> {each.sentence.arguments['name']}" for each in others)
-        reason = common_reason(each.reason for each in (first, *others))
+        names = tuple(f"{change.sentence.arguments['old']} -> {change.sentence.arguments['name']}" for change in others)
+        reason = common_reason(change.reason for change in (first, *others))
         pair.changes.append(replace(first, reason=reason, other_names=names))
     return with_new_parts(old, renamed)
 

@@ -1,4 +1,4 @@
-"""The names in parameter files that other programs use: controllers, their joints and frames, and their types."""
+"""Check shared names in parameter files: controllers, joints and frames, and the types of parameters."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
 _FRAMES = re.compile(r"(^|[._])frame_id$")
-"""The parameters with frames that any node offers to other programs."""
+"""The parameters that name a frame which the node publishes."""
 _USED_FRAMES = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
-"""The parameters with frames that localization and navigation only use. Controllers publish them."""
+"""The parameters that name a frame which localization and navigation only use. Controllers publish it."""
 _TRANSFORMS = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
 """The parameters that switch a transform of a node on and off."""
 _JOINTS = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
-"""The parameters with joints that a controller offers. Other nodes only use them."""
+"""The parameters that name joints of a controller. Other nodes only use the joints."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
-"""The parameters with the names of controllers that a program loads or commands."""
+"""The parameters that name controllers which a program loads or commands."""
 _CLASS = re.compile(r"\w+/\w+")
-"""The class of a plugin as ROS 1 writes it."""
+"""The class of a plugin in the notation of ROS 1."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
@@ -33,7 +33,7 @@ _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
 _NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 _PLUGINS = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
-"""The parameters with the names of plugins, which trees of behaviors and goals name."""
+"""The parameters that list plugin names, which behavior trees and goals use."""
 _SEPARATOR = re.compile(r"(?<=.)[.\[]")
 """The separators of the names in a path."""
 _SUBSTITUTION = re.compile(r"\\\$\\\([\w\\ -]+\\\)")
@@ -43,7 +43,7 @@ _ANY = ("**", "*")
 
 
 class NameRules:
-    """The rules for breaking changes of a parameter file.
+    """Decides which changes of a parameter file are breaking.
 
     Args:
         old: the old values by path.
@@ -52,13 +52,13 @@ class NameRules:
 
     def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
         self._new_nodes = {node for name in new if (node := node_of_parameter(name)) is not None}
-        self._controllers = {*controllers(old), *controllers(new)}
-        self._new_controllers = set(controllers(new))
+        self._controllers = {*find_controllers(old), *find_controllers(new)}
+        self._new_controllers = set(find_controllers(new))
         self._new_parts = {part for name in new for part in part_names(name)}
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
     def change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
-        """Return why a changed value is breaking, or None if it is not."""
+        """Return the reason why a changed value is breaking, or None if it is not."""
         old, new = old_value.text, new_value.text
         if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
             return phrase("the message type of a topic changes between one with and one without a header")
@@ -70,27 +70,27 @@ class NameRules:
                 old=old,
                 new=new,
             )
-        gone = _items(old) - _items(new)
-        gone -= {name for name in gone if any(may_be(each, name) for each in _items(new))}
+        removed = _name_items(old) - _name_items(new)
+        removed -= {name for name in removed if any(may_be(item, name) for item in _name_items(new))}
         if _TRANSFORMS.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
             return phrase("the node does not publish its transform any more")
         is_offered = offers_frame(parameter)
         if is_offered:
-            gone -= self._new_frames
+            removed -= self._new_frames
         if self._is_controllers(parameter):
             is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
-        if gone and is_offered:
-            return name_reason(", ".join(sorted(gone)))
-        if gone and _PLUGINS.search(parameter):
-            return _plugin_reason(gone)
-        if gone and old_value.is_list and _CONTROLLER_LIST.search(parameter):
-            return controller_reason(", ".join(sorted(gone)))
+        if removed and is_offered:
+            return name_reason(", ".join(sorted(removed)))
+        if removed and _PLUGINS.search(parameter):
+            return _plugin_reason(removed)
+        if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
+            return controller_reason(", ".join(sorted(removed)))
         return type_reason(old_value, new_value) if is_parameter(parameter) else None
 
     def removal_reason(self, parameter: str, old: str) -> Phrase | None:
-        """Return why a removed parameter is breaking, or None if it is not.
+        """Return the reason why removing a parameter is breaking, or None if it is not.
 
-        The type of a controller can also be one of its own parameters.
+        The type of a controller can also be declared among its own parameters.
         """
         if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false" and self._has_node(parameter):
             return phrase("the message type of a topic changes between one with and one without a header")
@@ -100,15 +100,15 @@ class NameRules:
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
-        if _PLUGINS.search(parameter) and _items(old):
-            return _plugin_reason(_items(old))
+        if _PLUGINS.search(parameter) and _name_items(old):
+            return _plugin_reason(_name_items(old))
         if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         own = next(_ros1_controllers({parameter: old}), None)
-        return None if own is None else controller_reason(_slashed(own))
+        return None if own is None else controller_reason(_slash_separated(own))
 
     def _is_in_lost_group(self, parameter: str, root: str) -> bool:
-        """Return whether the group of a parameter is gone. A single value falls back to the default of the node."""
+        """Return whether the group of a parameter was removed. A single removed value gets the default of the node."""
         group = part_names(parameter)[-2]
         return root in self._new_parts and group not in self._new_parts
 
@@ -125,12 +125,12 @@ class NameRules:
 
 
 def offers_frame(parameter: str) -> bool:
-    """Return whether a parameter names a frame that any node offers to other programs."""
+    """Return whether a parameter names a frame that a node publishes for other programs."""
     return _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
 
 
 def is_parameter(name: str) -> bool:
-    """Return whether a path is that of a parameter of a node."""
+    """Return whether a path is the path of a node parameter."""
     return _NODE.match(name) is not None
 
 
@@ -141,14 +141,14 @@ def node_of_parameter(name: str) -> str | None:
 
 
 def has_other_type(old: YamlValue, new: YamlValue) -> bool:
-    """Return whether two values have types that differ. Empty values fit all types."""
+    """Return whether two values differ in type. An empty value fits all types."""
     if old.is_list != new.is_list and None not in (old.type, new.type):
         return True
     return None not in (old.type, new.type) and old.type is not new.type
 
 
 def type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
-    """Return why it is breaking that a parameter has a value of another type, or None if the type is the same."""
+    """Return the reason why another type of a parameter is breaking, or None if the type is the same."""
     if not has_other_type(old, new):
         return None
     return phrase(
@@ -157,12 +157,12 @@ def type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
 
 
 def controller_reason(name: str) -> Phrase:
-    """Return why it is breaking that a controller is gone."""
+    """Return the reason why removing a controller is breaking."""
     return phrase("programs that load or command the controller '{name}' do not find it", name=name)
 
 
 def _ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
-    """Yield the paths of the controllers of ROS 1 among values: parts with a class, not inside those of a node."""
+    """Yield the paths of ROS 1 controllers among values: parts with a type outside of node parameters."""
     for name, text in values.items():
         part, _, key = name.rpartition(".")
         is_controller = "controller" in f"{part} {text}".lower() and "[" not in part
@@ -177,10 +177,10 @@ def _typed_controller(parameter: str, old: str, new: str) -> str | None:
         is_class = match.re is _CONTROLLER_TYPE or (_CLASS.fullmatch(old) and _CLASS.fullmatch(new))
         return match["controller"] if is_class else None
     part = next(_ros1_controllers({parameter: old}), None)
-    return _slashed(part) if part is not None and _CLASS.fullmatch(new) else None
+    return _slash_separated(part) if part is not None and _CLASS.fullmatch(new) else None
 
 
-def _slashed(part: str) -> str:
+def _slash_separated(part: str) -> str:
     return part.replace(".", "/")
 
 
@@ -188,27 +188,27 @@ def _plugin_reason(names: Collection[str]) -> Phrase:
     return phrase("programs that name the plugins {names} do not find them", names=quoted_names(sorted(names)))
 
 
-def controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
-    """Yield the names of the controllers that a file gives a type."""
+def find_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+    """Yield the names of the controllers whose types a file sets."""
     for name in values:
         match = _CONTROLLER_TYPE.fullmatch(name) or _OWN_TYPE.fullmatch(name)
         if match is not None:
             yield match["controller"]
 
 
-def all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
-    """Yield the names of the controllers of ROS 2 and ROS 1 that a file gives a type."""
-    yield from controllers(values)
-    yield from map(_slashed, _ros1_controllers({name: value.text for name, value in values.items()}))
+def find_all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
+    """Yield the names of the ROS 2 and ROS 1 controllers whose types a file sets."""
+    yield from find_controllers(values)
+    yield from map(_slash_separated, _ros1_controllers({name: value.text for name, value in values.items()}))
 
 
-def _items(text: str) -> set[str]:
-    """Return the items of a value that is a list, or the value itself, without numbers and truth values."""
+def _name_items(text: str) -> set[str]:
+    """Return the items of a list or the value itself, without numbers and booleans."""
     return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_TRUTH.fullmatch(item)}
 
 
 def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return why it is breaking to rename or move a part of the old file, or None if it is not.
+    """Return the reason why renaming or moving a part of the old file is breaking, or None if it is not.
 
     Args:
         part: the old path: a node, parameters of a node, or a controller of ROS 1.
@@ -222,7 +222,7 @@ def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -
     ]
     names = [name for name in names if not may_be(f"{new_part}{name.removeprefix(part)}", name)]
     if names:
-        return controller_reason(", ".join(map(_slashed, names)))
+        return controller_reason(", ".join(map(_slash_separated, names)))
     node, new_node = node_of_parameter(f"{part}."), node_of_parameter(f"{new_part}.")
     if node is None or part_names(part)[:-1] == part_names(new_part)[:-1]:
         return _renamed_node_reason(part, new_part, values)
@@ -232,13 +232,13 @@ def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -
 
 
 def _renamed_node_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return why it is breaking to rename or move a part of the old file, or None if it has no parameters of a node.
+    """Return the reason why renaming or moving node parameters is breaking, or None if it is not.
 
-    It is not if the new name matches the old node, too, or if the old name matches any node.
+    It is not breaking if the new name matches the old node, too, or if the old name matches any node.
     """
     inside = next((name for name in values if _NODE.match(name) and name.startswith(f"{part}.")), None)
     match = None if inside is None else _NODE.match(inside)
-    if inside is None or match is None or len(match[0]) < len(part) or match["node"] in controllers(values):
+    if inside is None or match is None or len(match[0]) < len(part) or match["node"] in find_controllers(values):
         return None
     new_node = node_of_parameter(f"{new_part}{inside.removeprefix(part)}")
     if new_node is None or matches_node(new_node, match["node"]) or any(word in match["node"] for word in _ANY):
@@ -247,7 +247,7 @@ def _renamed_node_reason(part: str, new_part: str, values: Mapping[str, YamlValu
 
 
 def matches_node(name: str, node: str) -> bool:
-    """Return whether a name in a parameter file, such as ``/**/amcl``, matches a node as in rcl."""
+    """Return whether a name in a parameter file, such as ``/**/amcl``, matches a node by the rules of rcl."""
     words = [word for word in re.split(r"[./]", name) if word]
     pattern = "".join(
         r"(?:/[^/]+)*" if word == "**" else r"/[^/]+" if word == "*" else f"/{re.escape(word)}" for word in words
@@ -256,11 +256,11 @@ def matches_node(name: str, node: str) -> bool:
 
 
 def may_be(text: str, name: str) -> bool:
-    """Return whether a text with substitutions, such as ``$(arg arm)_joint1``, can be a name."""
+    """Return whether a text with substitutions, such as ``$(arg arm)_joint1``, can evaluate to a name."""
     pattern, count = _SUBSTITUTION.subn(".*", re.escape(text))
     return count > 0 and re.fullmatch(pattern, name) is not None
 
 
 def part_names(name: str) -> list[str]:
-    """Return the paths of the mappings and items that contain a value, the outermost first, and that of the value."""
+    """Return the paths of the mappings and items around a value, the outermost first, then its own path."""
     return [*(name[: match.start()] for match in _SEPARATOR.finditer(name)), name]

@@ -1,4 +1,4 @@
-"""The comparison of plugin descriptions of pluginlib, which name the classes that programs load."""
+"""Compare plugin descriptions of pluginlib, which name the classes that programs load."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
-from linkwright.review.renamed_packages import PackageNames, renamed_packages
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 
@@ -22,7 +22,7 @@ _LOST = phrase("programs and configurations that load the class do not find it")
 
 @dataclass(frozen=True)
 class _PluginClass:
-    """A class that a plugin description declares: its type, its base class, its library, and where it is declared."""
+    """A class in a plugin description: its type, base class, library and location."""
 
     type: str
     base: str
@@ -34,19 +34,19 @@ class _PluginClass:
 def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
     """Yield the changed plugin descriptions with added, removed and changed classes.
 
-    A class that only moves to another file is not a change.
+    Moving a class to another file is not a change.
     """
-    old = _classes(versions.old, [file.old_path for file in changed_files])
-    new = _classes(versions.new, [file.new_path for file in changed_files])
+    old = _declared_classes(versions.old, [file.old_path for file in changed_files])
+    new = _declared_classes(versions.new, [file.new_path for file in changed_files])
     changes: dict[str, list[Change]] = {}
-    names = PackageNames(renamed_packages(versions))
-    renamed = _renamed(old, new, names)
+    names = PackageNames(find_renamed_packages(versions))
+    renamed = _find_renamed_classes(old, new, names)
     for old_name, name in renamed.items():
         text = phrase("plugin class '{old}' renamed to '{new}'", old=old_name, new=name)
         changes.setdefault(new[name].path, []).append(Change(text, Effect.BREAKING, _LOST, new[name].location))
     old = {renamed.get(name, name): plugin for name, plugin in old.items()}
     for name, plugin in new.items():
-        for change in _changes(name, old.get(name), plugin, names):
+        for change in _find_changes(name, old.get(name), plugin, names):
             changes.setdefault(plugin.path, []).append(change)
     for name, plugin in old.items():
         if name not in new:
@@ -61,7 +61,7 @@ def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         yield Subject(SubjectKind.PLUGINS, path, file.old_path, file.new_path, changes[path])
 
 
-def _classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
+def _declared_classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
     """Return the classes that plugin descriptions declare, by the name that programs load."""
     classes: dict[str, _PluginClass] = {}
     for path in paths:
@@ -90,7 +90,7 @@ def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _
 
 
 def _is_exported(version: Version, path: str) -> bool:
-    """Return whether a package may tell programs where a plugin description is, without which they do not find it."""
+    """Return whether a package may export a plugin description. Programs do not find it without an export."""
     folders = (version.file(parent.as_posix()) for parent in PurePosixPath(path).parents)
     package = next((folder for folder in folders if (folder / MANIFEST).is_file()), None)
     if package is None:
@@ -100,40 +100,44 @@ def _is_exported(version: Version, path: str) -> bool:
     return PurePosixPath(path).name in text or _UNKNOWN_EXPORT.search(text) is not None
 
 
-def _renamed(old: Mapping[str, _PluginClass], new: Mapping[str, _PluginClass], names: PackageNames) -> dict[str, str]:
-    """Return the new names of classes by the old ones.
+def _find_renamed_classes(
+    old: Mapping[str, _PluginClass], new: Mapping[str, _PluginClass], names: PackageNames
+) -> dict[str, str]:
+    """Return the new names of renamed classes by old name.
 
-    A class has a new name if only the name of its package in it is another one, or if it has the same type.
+    A class is renamed if only the package part of its name differs, or if it keeps its type.
     """
-    gone = {name: plugin for name, plugin in old.items() if name not in new}
-    come = {name: plugin for name, plugin in new.items() if name not in old}
+    removed = {name: plugin for name, plugin in old.items() if name not in new}
+    added = {name: plugin for name, plugin in new.items() if name not in old}
     renamed: dict[str, str] = {}
-    for old_name, plugin in gone.items():
-        same_type = [name for name, other in come.items() if plugin.type and other.type == names.derived(plugin.type)]
-        derived = names.derived(old_name)
-        new_name = derived if derived in come else same_type[0] if len(same_type) == 1 else None
+    for old_name, plugin in removed.items():
+        same_type = [
+            name for name, other in added.items() if plugin.type and other.type == names.rename_derived(plugin.type)
+        ]
+        derived = names.rename_derived(old_name)
+        new_name = derived if derived in added else same_type[0] if len(same_type) == 1 else None
         if new_name is not None:
             renamed[old_name] = new_name
-            del come[new_name]
+            del added[new_name]
     return renamed
 
 
-def _changes(name: str, old: _PluginClass | None, new: _PluginClass, names: PackageNames) -> Iterator[Change]:
+def _find_changes(name: str, old: _PluginClass | None, new: _PluginClass, names: PackageNames) -> Iterator[Change]:
     if old is None:
         yield Change(phrase("plugin class '{name}' added", name=name), location=new.location)
         return
-    if names.derived(old.base) != new.base:
+    if names.rename_derived(old.base) != new.base:
         text = phrase("plugin class '{name}': base class {old} -> {new}", name=name, old=old.base, new=new.base)
         reason = phrase("programs that load the class as the old base class do not start")
         yield Change(text, Effect.BREAKING, reason, new.location)
-    if names.derived(old.type) != new.type:
+    if names.rename_derived(old.type) != new.type:
         text = phrase("plugin class '{name}': type {old} -> {new}", name=name, old=old.type, new=new.type)
         yield Change(text, location=new.location)
-    if _library_name(names.derived(old.library)) != _library_name(new.library):
+    if _library_name(names.rename_derived(old.library)) != _library_name(new.library):
         text = phrase("plugin class '{name}': library {old} -> {new}", name=name, old=old.library, new=new.library)
         yield Change(text, location=new.location)
 
 
 def _library_name(path: str) -> str:
-    """Return the name of a library without its folder, prefix and suffix, which pluginlib finds by itself."""
+    """Return the name of a library without folder, prefix and suffix. pluginlib adds these itself."""
     return PurePosixPath(path).name.removeprefix("lib").removesuffix(".so")

@@ -1,4 +1,4 @@
-"""The comparison of ``setup.cfg`` and ``pyproject.toml``: executables, other entry points and installed files."""
+"""Compare ``setup.cfg`` and ``pyproject.toml``: executables, other entry points and installed files."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ def read_setup_cfg(version: Version, path: str) -> BuildFacts:
     except Error as error:
         raise UnreadableFileError(foreign(str(error).splitlines()[0])) from error
     sections: dict[str, dict[str, str]] = {name: dict(parser[name]) for name in parser.sections()}
-    facts = _facts(path)
+    facts = _empty_facts(path)
     facts.project = sections.get("metadata", {}).get("name", "")
     for group, lines in sections.get("options.entry_points", {}).items():
         facts.facts += _entry_points(group, (line.partition("=")[::2] for line in lines.splitlines()))
     for folder, lines in sections.get("options.data_files", {}).items():
         _add_files(facts, version, folder, lines.splitlines())
     settings = {**sections.get("metadata", {}), **sections.get("options", {})}
-    facts.facts += _settings(settings)
+    facts.facts += _setting_facts(settings)
     for section, option in _SCRIPT_FOLDERS:
         value = sections.get(section, {}).get(option, "")
         if value:
@@ -70,23 +70,23 @@ def read_pyproject(version: Version, path: str) -> BuildFacts:
         document = parse_toml(version.file(path).read_text(encoding="utf-8", errors="replace"))
     except ValueError as error:
         raise UnreadableFileError(foreign(str(error))) from error
-    facts = _facts(path)
-    project = _table(document, "project")
+    facts = _empty_facts(path)
+    project = _find_table(document, "project")
     facts.project = str(project.get("name", ""))
-    facts.facts += _entry_points(PROGRAM_GROUP, _table(project, "scripts").items())
-    for group, entries in _table(project, "entry-points").items():
+    facts.facts += _entry_points(PROGRAM_GROUP, _find_table(project, "scripts").items())
+    for group, entries in _find_table(project, "entry-points").items():
         facts.facts += _entry_points(group, entries.items() if isinstance(entries, Mapping) else ())
-    for folder, patterns in _table(document, "tool", "setuptools", "data-files").items():
+    for folder, patterns in _find_table(document, "tool", "setuptools", "data-files").items():
         _add_files(facts, version, folder, patterns if isinstance(patterns, list) else ())
-    facts.facts += _settings(project)
+    facts.facts += _setting_facts(project)
     return facts
 
 
-def _facts(path: str) -> BuildFacts:
+def _empty_facts(path: str) -> BuildFacts:
     return BuildFacts(package=PurePosixPath(path).parent.as_posix().removeprefix("."))
 
 
-def _table(document: Mapping[str, Any], *names: str) -> Mapping[str, Any]:
+def _find_table(document: Mapping[str, Any], *names: str) -> Mapping[str, Any]:
     for name in names:
         value = document.get(name)
         document = value if isinstance(value, Mapping) else {}
@@ -104,7 +104,7 @@ def _entry_points(group: str, entries: Iterable[tuple[object, object]]) -> Itera
             yield Fact(FactKind.ENTRY_POINT, f"{group}: {name}", function)
 
 
-def _settings(settings: Mapping[str, object]) -> Iterator[Fact]:
+def _setting_facts(settings: Mapping[str, object]) -> Iterator[Fact]:
     for name in _SHOWN:
         value = settings.get(name)
         if isinstance(value, str) and value.strip():
@@ -112,7 +112,7 @@ def _settings(settings: Mapping[str, object]) -> Iterator[Fact]:
 
 
 def _add_files(facts: BuildFacts, version: Version, folder: str, patterns: Iterable[object]) -> None:
-    """Add the files that match patterns, which are installed into a folder."""
+    """Add the files that match patterns to the files installed into a folder."""
     package = version.file(facts.package)
     for pattern in (str(pattern).strip() for pattern in patterns):
         if not pattern or Path(pattern).is_absolute() or ".." in PurePosixPath(pattern).parts:

@@ -1,4 +1,4 @@
-"""Parts of YAML files that have another name or place in the new version, such as nodes, plugins and joints."""
+"""Find renamed and moved parts of YAML files, such as nodes, plugins and joints."""
 
 from __future__ import annotations
 
@@ -12,38 +12,38 @@ from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.merging import name_edit
 
 _MIN_FACTS = 6
-"""The minimum number of parameters and values of a part that can be recognized under another name."""
+"""The minimum number of parameters and values by which a renamed part is recognized."""
 _MIN_SIMILARITY = 0.6
 _MIN_ALIKE = 2
-"""The minimum number of neighboring parts, renamed in the same way, that need not have many values."""
+"""The minimum number of sibling parts with the same edit that are recognized without many values."""
 _MAX_PAIRS = 2_500
-"""The maximum number of pairs of old and new neighboring parts whose names are compared."""
+"""The maximum number of pairs of old and new sibling parts whose names are compared."""
 _MAX_NEIGHBORS = 200
-"""The maximum number of new parts beside a part that are compared with it."""
+"""The maximum number of new sibling parts that are compared with a part."""
 _MAX_PARTS = 60
 """The maximum number of parts of either version for which moved parts are searched."""
 _ITEM = re.compile(r"\[(old )?\d+\]$")
-"""The end of the path of an item of a list that has no name."""
+"""The end of the path of a list item without a name."""
 _NUMBER_OR_TRUTH = re.compile(r"[^=]*=([-+.,\s\d\[\]e]*|true|false)", re.IGNORECASE)
 """A name and a value that many parts can have in common, such as a limit."""
 _Facts = Counter[str]
 """The names and values in a part, alone and together."""
 
 
-def renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> dict[str, str]:
-    """Return the parts of a file that have another name or place but similar values: the new paths, by old path."""
+def find_renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> dict[str, str]:
+    """Return the new paths of renamed and moved parts with similar values, by old path."""
     old_parts, new_parts = _lone_parts(old, new), _lone_parts(new, old)
-    renamed = dict(_renamed_alike(old_parts, new_parts))
+    renamed = dict(_find_renamed_alike(old_parts, new_parts))
     rest = {name: facts for name, facts in new_parts.items() if name not in renamed.values() and not _ITEM.search(name)}
-    neighbors = _beside_each_other(rest)
+    neighbors = _group_siblings(rest)
     old_rest = {name: facts for name, facts in old_parts.items() if name not in renamed}
-    for parent, gone in _beside_each_other(old_rest).items():
-        come = neighbors.get(parent, [])
-        renamed |= _most_similar({name: old_rest[name] for name in gone}, {name: rest[name] for name in come})
+    for parent, removed in _group_siblings(old_rest).items():
+        added = neighbors.get(parent, [])
+        renamed |= _match_similar({name: old_rest[name] for name in removed}, {name: rest[name] for name in added})
     old_rest = {name: facts for name, facts in old_parts.items() if name not in renamed}
     new_names = set(renamed.values())
     new_rest = {name: facts for name, facts in new_parts.items() if name not in new_names}
-    renamed |= dict(_moved(_with_inner_parts(old_rest, old), _with_inner_parts(new_rest, new)))
+    renamed |= dict(_find_moved(_with_inner_parts(old_rest, old), _with_inner_parts(new_rest, new)))
     return renamed
 
 
@@ -60,7 +60,7 @@ def _with_new_part(name: str, renamed: Mapping[str, str]) -> str:
 
 
 def edit_of(old: str, new: str) -> Hashable:
-    """Return what differs in the last names of two paths beside each other; where they are for others."""
+    """Return the edit between the last names of two sibling paths; for other paths, both parents."""
     parent, new_parent = parent_of(old), parent_of(new)
     if parent != new_parent:
         return parent, new_parent
@@ -71,43 +71,46 @@ def edit_of(old: str, new: str) -> Hashable:
 
 
 def parent_of(part: str) -> str:
-    """Return the path of the mapping or list that contains a part; empty for one at the top."""
+    """Return the path of the mapping or list that contains a part; empty for a top-level part."""
     return (["", *part_names(part)])[-2]
 
 
-def _renamed_alike(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
-    """Yield the parts of which several beside each other are renamed in the same way.
+def _find_renamed_alike(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
+    """Yield sibling parts that are renamed in the same way.
 
-    Such parts are the joints of a controller that all get another prefix. The edit of the most names comes first.
-    Unless all old or all new parts have it, and the same keys, their values must be similar, too.
+    An example is a new prefix of all joints of a controller. The edit of the most names comes first.
+    Unless the edit covers all old or all new parts and their keys are equal, their values must be similar, too.
     """
-    old_groups, new_groups = _beside_each_other(old), _beside_each_other(new)
-    for parent, gone in old_groups.items():
-        come = new_groups.get(parent, [])
-        if any(_ITEM.search(name) for name in (*gone, *come)):
+    old_groups, new_groups = _group_siblings(old), _group_siblings(new)
+    for parent, removed in old_groups.items():
+        added = new_groups.get(parent, [])
+        if any(_ITEM.search(name) for name in (*removed, *added)):
             continue
         used: set[str] = set()
-        for group in _pairs_by_edit(gone, come):
+        for group in _pairs_by_edit(removed, added):
             pairs = _free_pairs(group, used)
-            is_of_all = len(pairs) in (len(gone), len(come))
-            if not (is_of_all and all(_inside(old[first]) == _inside(new[second]) for first, second in pairs)):
-                pairs = [pair for pair in pairs if _similarity(old[pair[0]], new[pair[1]]) >= _MIN_SIMILARITY]
+            is_of_all = len(pairs) in (len(removed), len(added))
+            if not (
+                is_of_all
+                and all(_strip_own_name(old[first]) == _strip_own_name(new[second]) for first, second in pairs)
+            ):
+                pairs = [pair for pair in pairs if _facts_similarity(old[pair[0]], new[pair[1]]) >= _MIN_SIMILARITY]
             if len(pairs) >= _MIN_ALIKE:
                 used.update(name for pair in pairs for name in pair)
                 yield from pairs
 
 
-def _pairs_by_edit(gone: Sequence[str], come: Sequence[str]) -> list[list[tuple[str, str]]]:
+def _pairs_by_edit(removed: Sequence[str], added: Sequence[str]) -> list[list[tuple[str, str]]]:
     """Return the pairs of old and new names that differ in the same way, the largest groups first."""
     groups: dict[Hashable, list[tuple[str, str]]] = {}
-    pairs = product(gone, come) if len(gone) * len(come) <= _MAX_PAIRS else zip(gone, come, strict=False)
+    pairs = product(removed, added) if len(removed) * len(added) <= _MAX_PAIRS else zip(removed, added, strict=False)
     for pair in pairs:
         groups.setdefault(edit_of(*pair), []).append(pair)
     return sorted(groups.values(), key=len, reverse=True)
 
 
 def _free_pairs(pairs: Iterable[tuple[str, str]], used: Collection[str]) -> list[tuple[str, str]]:
-    """Return the pairs of names that no other pair has, in their order."""
+    """Return the pairs whose names are in no other pair, in their order."""
     free: dict[str, str] = {}
     for old_name, new_name in pairs:
         if not {old_name, new_name} & {*used, *free, *free.values()}:
@@ -115,14 +118,14 @@ def _free_pairs(pairs: Iterable[tuple[str, str]], used: Collection[str]) -> list
     return list(free.items())
 
 
-def _most_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict[str, str]:
-    """Return the parts beside each other that have similar contents: the new paths, by old path.
+def _match_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict[str, str]:
+    """Return the new paths of sibling parts with similar contents, by old path.
 
-    A text that only one part of each version has, such as a type, counts more than equal numbers.
+    A text that is unique in each version, such as a type, counts more than equal numbers.
     """
     if len(new) > _MAX_NEIGHBORS:
         return {}
-    own_old, own_new = _owners(old), _owners(new)
+    own_old, own_new = _sole_owners(old), _sole_owners(new)
     shared = Counter((owner, own_new[text]) for text, owner in own_old.items() if text in own_new)
     most: Counter[str] = Counter()
     for pair, count in shared.items():
@@ -132,7 +135,7 @@ def _most_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict[
         count = shared[old_name, new_name]
         if old[old_name].total() < _MIN_FACTS or count < max(most[old_name], most[new_name]):
             continue
-        similarity = _similarity(old[old_name], new[new_name])
+        similarity = _facts_similarity(old[old_name], new[new_name])
         if similarity >= _MIN_SIMILARITY:
             is_longer = old_name.startswith(new_name) or new_name.startswith(old_name)
             ranked.append(((count, is_longer, similarity), old_name, new_name))
@@ -140,8 +143,8 @@ def _most_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict[
     return dict(_free_pairs(((old_name, new_name) for _, old_name, new_name in ranked), ()))
 
 
-def _owners(parts: Mapping[str, _Facts]) -> dict[str, str]:
-    """Return the parts that alone have a text, by the text with its name."""
+def _sole_owners(parts: Mapping[str, _Facts]) -> dict[str, str]:
+    """Return the only part that contains a text, by the text with its name."""
     owners: dict[str, list[str]] = {}
     for name, facts in parts.items():
         for fact in facts:
@@ -150,23 +153,23 @@ def _owners(parts: Mapping[str, _Facts]) -> dict[str, str]:
     return {fact: names[0] for fact, names in owners.items() if len(names) == 1}
 
 
-def _inside(facts: _Facts) -> set[str]:
+def _strip_own_name(facts: _Facts) -> set[str]:
     return {fact for fact in facts if "=" not in fact}
 
 
-def _beside_each_other(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
+def _group_siblings(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
     groups: dict[str, list[str]] = {}
     for name in parts:
         groups.setdefault(parent_of(name), []).append(name)
     return groups
 
 
-def _moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
-    """Yield the parts that keep their last name and are inside another part, each with its new path.
+def _find_moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
+    """Yield the old and new paths of parts that keep their last name and move into another part.
 
-    A small part is moved if another one was beside it in both versions.
+    A small part counts as moved if it has the same sibling in both versions.
     """
-    moved = dict(_moved_together(old, new))
+    moved = dict(_find_moved_together(old, new))
     old = {name: facts for name, facts in old.items() if not _is_inside(name, moved)}
     new = {name: facts for name, facts in new.items() if not _is_inside(name, moved.values())}
     if max(len(old), len(new)) > _MAX_PARTS:
@@ -181,7 +184,7 @@ def _moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tup
                 places = parent_of(old_name), parent_of(new_name)
                 if _last_name(new_name) != _last_name(old_name) or _is_inside(new_name, moved.values()):
                     continue
-                is_like = first.total() >= _MIN_FACTS and _similarity(first, second) >= _MIN_SIMILARITY
+                is_like = first.total() >= _MIN_FACTS and _facts_similarity(first, second) >= _MIN_SIMILARITY
                 if is_like if is_first else places in parents:
                     moved[old_name] = new_name
                     parents.add(places)
@@ -192,11 +195,11 @@ def _moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tup
             yield name, new_name
 
 
-def _moved_together(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
-    """Yield the parts of which several keep their names and move from one part to another, such as all poses."""
+def _find_moved_together(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
+    """Yield parts that move together from one part to another and keep their names, such as all poses."""
     groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
-    names_in_new = _by_last_name(new)
-    for last_name, old_names in _by_last_name(old).items():
+    names_in_new = _group_by_last_name(new)
+    for last_name, old_names in _group_by_last_name(old).items():
         new_names = names_in_new.get(last_name, [])
         if max(len(old_names), len(new_names)) > _MAX_PARTS:
             continue
@@ -214,7 +217,7 @@ def _moved_together(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Ite
     yield from moved.items()
 
 
-def _by_last_name(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
+def _group_by_last_name(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
     names: dict[str, list[str]] = {}
     for name in parts:
         if not _ITEM.search(name):
@@ -223,7 +226,7 @@ def _by_last_name(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
 
 
 def _is_inside(name: str, parts: Collection[str]) -> bool:
-    """Return whether a part is one of others, or inside one of them."""
+    """Return whether a part is among the given parts or inside one of them."""
     return any(part in parts for part in part_names(name))
 
 
@@ -238,25 +241,25 @@ def _with_inner_parts(parts: Mapping[str, _Facts], values: Mapping[str, YamlValu
         is_inside = False
         for part in part_names(name)[:-1]:
             if is_inside:
-                result.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+                result.setdefault(part, Counter()).update(_value_facts(name.removeprefix(part), value))
             is_inside = is_inside or part in parts
     return result
 
 
-def _similarity(first: _Facts, second: _Facts) -> float:
+def _facts_similarity(first: _Facts, second: _Facts) -> float:
     return 2 * (first & second).total() / (first.total() + second.total())
 
 
 def _lone_parts(values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]) -> dict[str, _Facts]:
-    """Return the largest parts that other values do not have: their names and values, alone and together."""
+    """Return the largest parts that the other values lack: their names and values, alone and together."""
     other_parts = {part for name in others for part in part_names(name)}
     parts: dict[str, _Facts] = {}
     for name, value in values.items():
         part = next((part for part in part_names(name) if part not in other_parts), None)
         if part is not None:
-            parts.setdefault(part, Counter()).update(_facts(name.removeprefix(part), value))
+            parts.setdefault(part, Counter()).update(_value_facts(name.removeprefix(part), value))
     return parts
 
 
-def _facts(name: str, value: YamlValue) -> list[str]:
+def _value_facts(name: str, value: YamlValue) -> list[str]:
     return [name, f"{name}={value.text}"]

@@ -1,4 +1,4 @@
-"""The comparison of ``manifest.xml`` and ``stack.xml``, the manifests of rosbuild, which was used before catkin."""
+"""Compare ``manifest.xml`` and ``stack.xml``, the manifests of rosbuild, the predecessor of catkin."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from linkwright.xmltree import Element
 ROSBUILD_MANIFEST = "manifest.xml"
 _FILES = (ROSBUILD_MANIFEST, "stack.xml")
 _ROOTS = ("package", "stack")
-_TEXTS = ("version", "license", "author", "url")
+_TEXT_TAGS = ("version", "license", "author", "url")
 _Items = dict[tuple[str, str], Element]
 """Elements by tag and name."""
 
 
 def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
-    """Yield the changed manifests of rosbuild, each with the changes."""
+    """Yield the changed rosbuild manifests with their changes."""
     for file in changed_files:
         if PurePosixPath(file.path).name not in _FILES or file.is_submodule:
             continue
         old, new = _read(versions.old, file.old_path), _read(versions.new, file.new_path)
-        changes = list(_changes(versions, file, old, new))
+        changes = list(_find_changes(versions, file, old, new))
         if changes:
             yield Subject(SubjectKind.MANIFEST, file.path, file.old_path, file.new_path, changes)
 
 
 def _read(version: Version, path: str | None) -> Element | None:
-    """Return the root of a manifest, or None if the version does not have it or the file is something else."""
+    """Return the root of a manifest, or None if the version lacks the file or it is not a manifest."""
     if path is None or not version.file(path).is_file():
         return None
     try:
@@ -44,20 +44,20 @@ def _read(version: Version, path: str | None) -> Element | None:
     return root if root.tag in _ROOTS else None
 
 
-def _changes(versions: Versions, file: ChangedFile, old: Element | None, new: Element | None) -> Iterator[Change]:
+def _find_changes(versions: Versions, file: ChangedFile, old: Element | None, new: Element | None) -> Iterator[Change]:
     if old is None and new is not None and file.old_path is None:
-        names = list(dict.fromkeys(name for _, name in _dependencies(new)))
+        names = list(dict.fromkeys(name for _, name in _read_dependencies(new)))
         text = phrase("stack added") if new.tag == "stack" else phrase("package of rosbuild added")
         items = phrase("depends on {names}", names=joined_first(names, MAX_NAMES))
         yield Change(phrase("{change}: {items}", change=text, items=items) if names else text)
     elif old is not None and new is None and file.new_path is None:
-        yield from _removal(versions, file.path, old)
+        yield from _removal_changes(versions, file.path, old)
     elif old is not None and new is not None:
-        yield from _differences(file, old, new)
+        yield from _find_differences(file, old, new)
 
 
-def _removal(versions: Versions, path: str, old: Element) -> Iterator[Change]:
-    """Yield the removal of a manifest, or the differences to the manifest of catkin in its place."""
+def _removal_changes(versions: Versions, path: str, old: Element) -> Iterator[Change]:
+    """Yield the removal of a manifest, or the differences from the catkin manifest that replaces it."""
     manifest = versions.new.file((PurePosixPath(path).parent / MANIFEST).as_posix())
     if old.tag == "stack":
         yield Change(phrase("stack removed"))
@@ -67,7 +67,7 @@ def _removal(versions: Versions, path: str, old: Element) -> Iterator[Change]:
             new_names = {dependency.name for dependency in Manifest(read_document(str(manifest))).dependencies}
         except LinkwrightError:
             return
-        removed = [name for tag, name in _dependencies(old) if tag == "depend" and name not in new_names]
+        removed = [name for tag, name in _read_dependencies(old) if tag == "depend" and name not in new_names]
         if removed:
             text = phrase("{tags} removed: {packages}", tags="depend", packages=joined_first(removed, MAX_NAMES))
             yield Change(text)
@@ -76,25 +76,25 @@ def _removal(versions: Versions, path: str, old: Element) -> Iterator[Change]:
         yield Change(phrase("package removed"), Effect.BREAKING, reason)
 
 
-def _differences(file: ChangedFile, old: Element, new: Element) -> Iterator[Change]:
+def _find_differences(file: ChangedFile, old: Element, new: Element) -> Iterator[Change]:
     old_name, new_name = (PurePosixPath(path or "").parent.name for path in (file.old_path, file.new_path))
     if old_name != new_name and new.tag == "package":
         text = phrase("package '{old}' renamed to '{new}'", old=old_name, new=new_name)
         reason = phrase("packages and launch files that name the package do not find it")
         yield Change(text, Effect.BREAKING, reason)
-    for tag in _TEXTS:
+    for tag in _TEXT_TAGS:
         before, after = (", ".join(" ".join(part.text().split()) for part in root.elements(tag)) for root in (old, new))
         if before != after:
             text = phrase("{tag}: {old} -> {new}", tag=tag, old=before or "-", new=after or "-")
-            yield Change(text, location=_location(file, (new.first(tag) or new), is_old=False))
-    if _description(old) != _description(new):
-        yield Change(phrase("description changed"), location=_location(file, new, is_old=False))
-    old_items, new_items = ({**_dependencies(root), **_exports(root)} for root in (old, new))
-    yield from _lone(file, new_items, old_items, is_added=True)
-    yield from _lone(file, old_items, new_items, is_added=False)
+            yield Change(text, location=_element_location(file, (new.first(tag) or new), is_old=False))
+    if _description_text(old) != _description_text(new):
+        yield Change(phrase("description changed"), location=_element_location(file, new, is_old=False))
+    old_items, new_items = ({**_read_dependencies(root), **_read_exports(root)} for root in (old, new))
+    yield from _lone_changes(file, new_items, old_items, is_added=True)
+    yield from _lone_changes(file, old_items, new_items, is_added=False)
 
 
-def _dependencies(root: Element) -> _Items:
+def _read_dependencies(root: Element) -> _Items:
     """Return the dependencies on packages, stacks and system packages, by tag and name."""
     return {
         (tag, element.attributes[attribute]): element
@@ -104,40 +104,43 @@ def _dependencies(root: Element) -> _Items:
     }
 
 
-def _exports(root: Element) -> _Items:
+def _read_exports(root: Element) -> _Items:
     export = root.first("export")
     elements = () if export is None else export.elements()
     return {
-        ("export", " ".join([each.tag, *(f"{k}={v}" for k, v in each.attributes.items())])): each for each in elements
+        ("export", " ".join([element.tag, *(f"{k}={v}" for k, v in element.attributes.items())])): element
+        for element in elements
     }
 
 
-def _lone(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -> Iterator[Change]:
+def _lone_changes(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -> Iterator[Change]:
     for tag in ("depend", "rosdep", "export"):
         lone = [
-            (name, element) for (each, name), element in items.items() if each == tag and (each, name) not in others
+            (name, element)
+            for (item_tag, name), element in items.items()
+            if item_tag == tag and (item_tag, name) not in others
         ]
         if not lone:
             continue
         names = joined_first([name for name, _ in lone], MAX_NAMES)
-        location = _location(file, lone[0][1], is_old=not is_added)
+        location = _element_location(file, lone[0][1], is_old=not is_added)
         if is_added:
             yield Change(phrase("{tags} added: {packages}", tags=tag, packages=names), location=location)
             continue
         text = phrase("{tags} removed: {packages}", tags=tag, packages=names)
-        reason = _reason(tag, [element for _, element in lone])
+        reason = _removal_reason(tag, [element for _, element in lone])
         yield Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
 
 
-def _reason(tag: str, elements: Sequence[Element]) -> Phrase | None:
-    """Return why it is breaking that elements are gone, or None if it is not."""
+def _removal_reason(tag: str, elements: Sequence[Element]) -> Phrase | None:
+    """Return the reason why removing elements is breaking, or None if it is not."""
     plugins = [element.tag for element in elements if tag == "export" and "plugin" in element.attributes]
     if plugins:
         return phrase("programs that look for plugins of '{name}' do not find these", name=plugins[0])
     return None
 
 
-def _description(root: Element) -> str:
+def _description_text(root: Element) -> str:
     element = root.first("description")
     if element is None:
         return ""
@@ -145,7 +148,7 @@ def _description(root: Element) -> str:
     return " ".join([element.attributes.get("brief", ""), *texts])
 
 
-def _location(file: ChangedFile, element: Element, *, is_old: bool) -> Location | None:
+def _element_location(file: ChangedFile, element: Element, *, is_old: bool) -> Location | None:
     span = element.span()
     if span is None:
         return None

@@ -1,4 +1,4 @@
-"""The comparison of configurations of RViz: displays with their topics, frames, tools, panels and the view."""
+"""Compare RViz configurations: displays with their topics, frames, tools, panels and the view."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ import yaml
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.yaml_values import composed, read_yaml_values
+from linkwright.review.files.yaml_values import compose_yaml, read_yaml_values
 from linkwright.review.versions import Version
 
 _MANAGER = "Visualization Manager"
 _GLOBAL = f"{_MANAGER}.Global Options."
 _VIEW = f"{_MANAGER}.Views.Current."
 _IGNORED = frozenset({"Class", "Name", "Value", "Displays", "Links", "Frames", "Tree", "Namespaces", "Status"})
-"""The properties of displays that are shown elsewhere, or that RViz fills from the data that it received."""
+"""The properties of displays that are compared separately, or that RViz fills from received data."""
 _COMPUTED = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
 _TOPIC = "Topic"
 _MAX_PROPERTIES = 4
-"""The number of properties of a display that a line shows."""
+"""The maximum number of properties of a display in a line."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class _Item:
     """A display, tool or panel.
 
     Attributes:
-        name: its name, with those of the groups that contain it.
+        name: its name, with the names of the groups around it.
         class_name: its class.
         properties: its properties by name.
         line: its line, starting at 1.
@@ -58,7 +58,7 @@ class _Configuration:
 
 
 def compare_rviz_files(pair: FilePair) -> None:
-    """Compare two versions of a configuration of RViz, without the layout of its window."""
+    """Compare two versions of an RViz configuration, without the layout of the window."""
     configurations = pair.read(_read)
     if configurations is None:
         return
@@ -81,42 +81,42 @@ def rviz_contents(version: Version, path: str) -> Phrase | None:
 
 def _read(file: Path) -> _Configuration:
     text = file.read_text(encoding="utf-8-sig")
-    root = composed(text)
-    manager = _child(root, _MANAGER)
+    root = compose_yaml(text)
+    manager = _find_child(root, _MANAGER)
     if manager is None:
         raise UnreadableFileError(phrase("it has no '{name}'", name=_MANAGER))
     values = {name: value.text for name, value in read_yaml_values(text).items()}
     return _Configuration(
-        list(_items(_child(manager, "Displays"), "")),
-        list(_items(_child(manager, "Tools"), "")),
-        list(_items(_child(root, "Panels"), "")),
+        list(_read_items(_find_child(manager, "Displays"), "")),
+        list(_read_items(_find_child(manager, "Tools"), "")),
+        list(_read_items(_find_child(root, "Panels"), "")),
         values,
     )
 
 
-def _child(node: yaml.Node | None, name: str) -> yaml.Node | None:
+def _find_child(node: yaml.Node | None, name: str) -> yaml.Node | None:
     if not isinstance(node, yaml.MappingNode):
         return None
     return next((value for key, value in node.value if key.value == name), None)
 
 
-def _text(node: yaml.Node | None) -> str:
+def _node_text(node: yaml.Node | None) -> str:
     return str(node.value) if isinstance(node, yaml.ScalarNode) else ""
 
 
-def _items(node: yaml.Node | None, group: str) -> Iterator[_Item]:
-    """Yield the items of a list, and those of the groups of displays in it."""
+def _read_items(node: yaml.Node | None, group: str) -> Iterator[_Item]:
+    """Yield the items of a list, including the items of display groups."""
     for item in node.value if isinstance(node, yaml.SequenceNode) else ():
-        class_name = _text(_child(item, "Class"))
+        class_name = _node_text(_find_child(item, "Class"))
         if not class_name:
             continue
-        name = group + (_text(_child(item, "Name")) or class_name)
-        properties = dict(_properties(item, ""))
+        name = group + (_node_text(_find_child(item, "Name")) or class_name)
+        properties = dict(_read_properties(item, ""))
         yield _Item(name, class_name, properties, item.start_mark.line + 1, item.start_mark.column + 1)
-        yield from _items(_child(item, "Displays"), f"{name}/")
+        yield from _read_items(_find_child(item, "Displays"), f"{name}/")
 
 
-def _properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
+def _read_properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
     """Yield the properties of an item. A topic is a text in old files and a group of properties in new ones."""
     for key, value in node.value:
         name = str(key.value)
@@ -124,7 +124,7 @@ def _properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
             continue
         full_name = path if path and name == "Value" else f"{path} {name}".strip()
         if isinstance(value, yaml.MappingNode):
-            yield from _properties(value, full_name)
+            yield from _read_properties(value, full_name)
         elif isinstance(value, yaml.ScalarNode):
             yield full_name, " ".join(str(value.value).split())
 
@@ -146,23 +146,23 @@ def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, st
 
 def _compare_displays(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item]) -> None:
     old_rest, new_rest = list(old), list(new)
-    for before, after in list(_matched(old_rest, new_rest)):
+    for before, after in list(_take_matches(old_rest, new_rest)):
         for text in _display_changes(before, after):
-            pair.add(text, _location(pair, after))
+            pair.add(text, _item_location(pair, after))
     for display in new_rest:
         text = phrase("display '{name}' of class '{type}' added", name=display.name, type=display.class_name)
         if display.topic:
             text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
-        pair.add(text, _location(pair, display))
+        pair.add(text, _item_location(pair, display))
     for display in old_rest:
         text = phrase("display '{name}' of class '{type}' removed", name=display.name, type=display.class_name)
         if display.topic:
             text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
-        pair.add(text, _location(pair, display, is_old=True))
+        pair.add(text, _item_location(pair, display, is_old=True))
 
 
-def _matched(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
-    """Take the displays that belong together from both lists, and yield them."""
+def _take_matches(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
+    """Remove the matching displays from both lists, and yield them as pairs."""
     for keys in (("name", "class_name", "topic"), ("name", "class_name"), ("class_name", "topic"), ("name",)):
         for after in list(new):
             key = [getattr(after, name) for name in keys]
@@ -204,17 +204,17 @@ def _compare_classes(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item],
     removed = [item for name, item in old_classes.items() if name not in new_classes]
     if added:
         names = quoted_names([item.class_name for item in added])
-        pair.add(phrase("{kind} added: {names}", kind=title, names=names), _location(pair, added[0]))
+        pair.add(phrase("{kind} added: {names}", kind=title, names=names), _item_location(pair, added[0]))
     if removed:
         names = quoted_names([item.class_name for item in removed])
         text = phrase("{kind} removed: {names}", kind=title, names=names)
-        pair.add(text, _location(pair, removed[0], is_old=True))
+        pair.add(text, _item_location(pair, removed[0], is_old=True))
     for name, item in new_classes.items():
         before = old_classes.get(name)
         if before is not None and before.topic != item.topic:
             text = phrase("'{name}': topic {old} -> {new}", name=name, old=before.topic or "-", new=item.topic or "-")
-            pair.add(text, _location(pair, item))
+            pair.add(text, _item_location(pair, item))
 
 
-def _location(pair: FilePair, item: _Item, *, is_old: bool = False) -> Location:
+def _item_location(pair: FilePair, item: _Item, *, is_old: bool = False) -> Location:
     return Location(pair.old_path if is_old else pair.new_path, item.line, item.column, is_old)

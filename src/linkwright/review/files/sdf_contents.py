@@ -1,4 +1,4 @@
-"""The contents of added elements of SDF in one line."""
+"""Summarize added SDF elements in one line."""
 
 from __future__ import annotations
 
@@ -12,14 +12,16 @@ from linkwright.review.plugins import contents_text, plugin_parts
 from linkwright.xmltree import Element
 
 _MAX_VALUES_OF_PLUGIN = 4
-"""The number of values of each plugin or sensor that the line about an added world or model shows."""
+"""The maximum number of values of each plugin or sensor in the line about an added world or model."""
 _NAMED_BY_CHILD = "include"
-"""The tag of elements whose name is a child, or the URI if there is none."""
+"""The tag of elements that have their name, or else their URI, as a child."""
 
 
 def names_in(element: Element) -> Iterator[Phrase]:
-    """Yield the models of a world, or the links and joints of a model, and the plugins and sensors."""
-    names = {tag: [_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")}
+    """Yield the models of a world, or the links and joints of a model, and all plugins and sensors."""
+    names = {
+        tag: [_element_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")
+    }
     models = [*names["model"], *names["include"]]
     if models:
         yield phrase("models {names}", names=joined_first(models, MAX_NAMES))
@@ -31,7 +33,7 @@ def names_in(element: Element) -> Iterator[Phrase]:
 
 
 def shapes_and_mass(model: Element) -> Iterator[Phrase]:
-    """Yield the shapes of a model, and the mass of its links that have one."""
+    """Yield the shapes of a model, and the total mass of the links that have a mass."""
     shapes: Counter[tuple[str, str]] = Counter()
     for element in model.walk():
         geometry = element.first("geometry") if element.tag in ("visual", "collision") else None
@@ -44,7 +46,12 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
         texts.append(text if count == 1 else phrase("{part} ({count} times)", part=text, count=count))
     if texts:
         yield joined_first(texts, MAX_NAMES)
-    masses = [element.text() for each in model.walk() if each.tag == "inertial" for element in each.elements("mass")]
+    masses = [
+        element.text()
+        for inertial in model.walk()
+        if inertial.tag == "inertial"
+        for element in inertial.elements("mass")
+    ]
     try:
         mass = sum(float(text) for text in masses)
     except ValueError:
@@ -53,7 +60,7 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
         yield phrase("mass {mass:.4g} kg", mass=mass)
 
 
-def _name(element: Element) -> str:
+def _element_name(element: Element) -> str:
     """Return the name of an element, or the last part of the URI of an included model without a name."""
     texts = (element.first(tag) for tag in ("name", "uri"))
     included = next((text.text().strip().rstrip("/") for text in texts if text is not None), "")
@@ -61,7 +68,7 @@ def _name(element: Element) -> str:
 
 
 def all_content(element: Element) -> str:
-    """Return the attributes and texts of an element and of all elements in it, without their names."""
+    """Return the attributes and texts of an element and all its descendants, without names."""
     return " ".join(filter(None, (f"{child.tag} {own_content(child)}" for child in element.walk())))
 
 
@@ -69,8 +76,8 @@ def added_text(path: str, element: Element) -> Phrase:
     """Return the line about an added element, with its values.
 
     Args:
-        path: the path of the element, with the names of others that were added with the same contents.
-        element: the element.
+        path: the path of the element, with the names of elements that were added with the same contents.
+        element: the XML element.
     """
     contents = joined(names) if (names := list(names_in(element))) else None
     if contents is None:
@@ -81,7 +88,7 @@ def added_text(path: str, element: Element) -> Phrase:
 
 
 def _only_descendant(element: Element, path: str) -> tuple[Element, str]:
-    """Return an element, or, if it has no name, the one below it that has a value or several children, and its path."""
+    """Return an element, or for a nameless one the first descendant with a value or several children, with its path."""
     children = list(element.elements())
     while len(children) == 1 and not (element.attributes or element.text().strip() or element.tag == _NAMED_BY_CHILD):
         element = children[0]

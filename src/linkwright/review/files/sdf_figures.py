@@ -1,4 +1,4 @@
-"""Quantities of whole models in SDF, in two versions."""
+"""Compare quantities of whole SDF models."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figur
     Args:
         old: the old file, with its includes resolved.
         new: the new file, with its includes resolved.
-        scenes: the visuals of both files; empty if they do not differ, or cannot be drawn.
+        scenes: the visuals of both files; empty if they are equal or cannot be drawn.
     """
     if old.worlds or new.worlds:
         return
@@ -36,7 +36,7 @@ def model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figur
     for name, unit, measure in _QUANTITIES:
         yield from figure_of(name, unit, *map(measure, measures))
     if scenes:
-        yield from figure_of(phrase("size"), "m", *map(_size, scenes))
+        yield from figure_of(phrase("size"), "m", *map(_scene_size, scenes))
 
 
 class _Measures:
@@ -46,13 +46,13 @@ class _Measures:
         links: the number of links.
         joints: the number of joints.
         moving_joints: the number of joints that are not fixed.
-        mass_properties: the mass properties of all models in the frame of the file; None if the simulator computes
-            those of a link.
+        mass_properties: the mass properties of all models in the frame of the file; None if the simulator computes the
+            mass properties of a link.
     """
 
     def __init__(self, models: Sequence[Model]) -> None:
         links = [link for model in models for link in links_of(model, Frames(model), IDENTITY, model.name)]
-        joints = [joint for model in models for joint in _joints(model)]
+        joints = [joint for model in models for joint in _joint_mobility(model)]
         self.links = len(links)
         self.joints = len(joints)
         self.moving_joints = joints.count(True)
@@ -62,11 +62,11 @@ class _Measures:
             self.mass_properties = combine(_mass_properties(*pair) for pair in inertials)
 
 
-def _joints(model: Model) -> Iterator[bool]:
+def _joint_mobility(model: Model) -> Iterator[bool]:
     """Yield whether each joint of a model and of its nested models moves."""
     yield from (joint.type != "fixed" for joint in model.joints)
     for nested_model in model.models:
-        yield from _joints(nested_model)
+        yield from _joint_mobility(nested_model)
 
 
 def _mass_properties(placed: PlacedLink, inertial: Inertial) -> MassProperties:
@@ -77,15 +77,15 @@ def _mass_properties(placed: PlacedLink, inertial: Inertial) -> MassProperties:
     return own.moved(in_link).moved(pose_of(placed.pose))
 
 
-def _mass(measures: _Measures) -> float | None:
+def _total_mass(measures: _Measures) -> float | None:
     return None if measures.mass_properties is None else measures.mass_properties.mass
 
 
-def _center(measures: _Measures) -> Array | None:
+def _center_of_mass(measures: _Measures) -> Array | None:
     return None if measures.mass_properties is None else measures.mass_properties.center
 
 
-def _size(scene: Scene) -> Array | None:
+def _scene_size(scene: Scene) -> Array | None:
     """Return the lengths of the box around all visuals in m, shape (3,); None if some cannot be drawn."""
     if scene.problems or not len(scene.mesh.points):
         return None
@@ -97,7 +97,7 @@ _QUANTITIES: tuple[tuple[Phrase, str, Callable[[_Measures], object]], ...] = (
     (phrase("links"), "", lambda measures: measures.links),
     (phrase("joints"), "", lambda measures: measures.joints),
     (phrase("moving joints"), "", lambda measures: measures.moving_joints),
-    (phrase("mass"), "kg", _mass),
-    (phrase("center of mass"), "m", _center),
+    (phrase("mass"), "kg", _total_mass),
+    (phrase("center of mass"), "m", _center_of_mass),
 )
 """The quantities: their names, their units, and the functions that measure them."""

@@ -1,4 +1,4 @@
-"""Changed values of SDF: those that are equal but written differently, and those of the inertial of a link."""
+"""Filter and join changed SDF values: values that are equal but written differently, and inertials."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ _MOMENTS = frozenset({"ixx", "iyy", "izz"})
 _ROUNDING = 1e-6
 """The maximum difference of two equal values, relative to the largest number of a value."""
 _NOTHING = 1e-15
-"""The maximum difference of equal numbers, whatever their size."""
+"""The maximum absolute difference of equal numbers."""
 _SAME_RATIO = 1e-2
-"""The maximum relative difference of the ratios of the moments of inertia of a tensor that is scaled as a whole."""
+"""The maximum relative difference of the ratios of the moments of inertia of a scaled tensor."""
 _MIN_DIGITS, _MAX_DIGITS = 4, 17
 _POSE = 6
 """The number of numbers of a pose."""
-_PARTS = slice(0, 3), slice(3, _POSE)
+_POSE_PARTS = slice(0, 3), slice(3, _POSE)
 """The position and the rotation in a pose."""
 _FEW = 2
-"""The maximum number of entries of a tensor for which both values of each are shown."""
+"""The maximum number of changed tensor entries that are shown with both values."""
 
 
 @dataclass(frozen=True, slots=True)
 class InertialDifference(Difference):
-    """The differences of several values of the inertial of a link. The locations are those of the first one.
+    """The differences of several values of the inertial of a link. The location is that of the first difference.
 
     Attributes:
         values: the differences by the name of the value, such as ``mass``, ``pose`` or ``ixx``.
@@ -49,24 +49,24 @@ class InertialDifference(Difference):
         tensor = {name: changed.pop(name) for name in tuple(changed) if name.startswith("i")}
         texts: list[Phrase | str] = []
         if "mass" in changed:
-            texts.append("mass {} -> {} kg".format(*_short(*changed["mass"])))
+            texts.append("mass {} -> {} kg".format(*_shorten_numbers(*changed["mass"])))
         texts += _pose_texts(*changed["pose"]) if "pose" in changed else []
         texts += _tensor_texts(tensor) if tensor else []
         return joined(texts)
 
 
 def without_rounding(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield differences without those of numbers that are equal except for rounding."""
+    """Yield the differences except numbers that differ only by rounding."""
     return (difference for difference in differences if not _is_rounding(difference))
 
 
 def without_same_values(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield differences without those of equal values: ``1`` and ``true``, and a frame that is empty or not given."""
+    """Yield the differences except equal values, such as ``1`` and ``true``, or an empty and a missing frame."""
     return (difference for difference in differences if not (_is_same_truth(difference) or _is_empty_frame(difference)))
 
 
 def with_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield differences in which those of the inertial of a link are one."""
+    """Yield the differences, with the differences of the inertial of a link joined into one."""
     for inertial, group in groupby(differences, _inertial_of):
         if not inertial:
             yield from group
@@ -86,10 +86,10 @@ def with_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
 
 
 def _inertial_of(difference: Difference) -> str:
-    """Return the path of the inertial of which a value has changed; empty for other differences."""
+    """Return the path of the inertial that contains a changed value; empty for other differences."""
     match = _INERTIAL.fullmatch(f"{difference.name} {difference.property}".strip())
-    count = len(_numbers(difference.old))
-    is_readable = count in (1, _POSE) and count == len(_numbers(difference.new))
+    count = len(_parse_numbers(difference.old))
+    is_readable = count in (1, _POSE) and count == len(_parse_numbers(difference.new))
     return match["inertial"] if match is not None and is_readable and difference.kind == "changed" else ""
 
 
@@ -97,7 +97,7 @@ def _value_name(difference: Difference) -> str:
     return difference.property.rpartition(" ")[2]
 
 
-def _numbers(text: str | None) -> list[float]:
+def _parse_numbers(text: str | None) -> list[float]:
     """Return the numbers of a text, or none if it contains other words."""
     try:
         numbers = [float(word) for word in (text or "").split()]
@@ -107,8 +107,8 @@ def _numbers(text: str | None) -> list[float]:
 
 
 def _is_rounding(difference: Difference) -> bool:
-    """Return whether a difference is that of numbers that are equal except for rounding."""
-    old, new = _numbers(difference.old), _numbers(difference.new)
+    """Return whether the numbers of a difference are equal except for rounding."""
+    old, new = _parse_numbers(difference.old), _parse_numbers(difference.new)
     if difference.kind != "changed" or not old or len(old) != len(new):
         return False
     if not {".", "e", "E"} & set(f"{difference.old}{difference.new}"):
@@ -118,7 +118,7 @@ def _is_rounding(difference: Difference) -> bool:
 
 
 def _is_same_truth(difference: Difference) -> bool:
-    """Return whether a difference is that of a truth value, not of a parameter of a plugin, which can be a text."""
+    """Return whether the values are equal booleans. A parameter of a plugin is not one, because it can be a text."""
     values = {difference.old, difference.new}
     is_of_plugin = _PLUGIN.search(f"{difference.name} {difference.property}") is not None
     return difference.kind == "changed" and values in _SAME_TRUTHS and not is_of_plugin
@@ -130,25 +130,25 @@ def _is_empty_frame(difference: Difference) -> bool:
 
 
 def _without_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:
-    """Return values without products of inertia whose change is small beside the moments."""
-    moments = [abs(number) for name in _MOMENTS & values.keys() for number in _numbers(values[name].old)]
+    """Return the values without products of inertia that change little compared with the moments."""
+    moments = [abs(number) for name in _MOMENTS & values.keys() for number in _parse_numbers(values[name].old)]
     limit = _ROUNDING * max(moments, default=0.0)
     return {
         name: value
         for name, value in values.items()
-        if not (name.startswith("i") and name not in _MOMENTS and _change(value) <= limit)
+        if not (name.startswith("i") and name not in _MOMENTS and _change_size(value) <= limit)
     }
 
 
-def _change(difference: Difference) -> float:
-    (old,), (new,) = _numbers(difference.old), _numbers(difference.new)
+def _change_size(difference: Difference) -> float:
+    (old,), (new,) = _parse_numbers(difference.old), _parse_numbers(difference.new)
     return abs(new - old)
 
 
 # --- texts -----------------------------------------------------------------------------------------------------------
 
 
-def _short(old: str, new: str) -> tuple[str, str]:
+def _shorten_numbers(old: str, new: str) -> tuple[str, str]:
     """Return two numbers with as many digits as they need to look different."""
     for digits in range(_MIN_DIGITS, _MAX_DIGITS):
         texts = [f"{float(text):.{digits}g}" for text in (old, new)]
@@ -159,12 +159,12 @@ def _short(old: str, new: str) -> tuple[str, str]:
 
 def _pose_texts(old: str, new: str) -> Iterator[Phrase | str]:
     first, second = old.split(), new.split()
-    center, axes = ([_numbers(" ".join(words[part])) for words in (first, second)] for part in _PARTS)
+    center, axes = ([_parse_numbers(" ".join(words[part])) for words in (first, second)] for part in _POSE_PARTS)
     if center[0] != center[1]:
         text = "center {} -> {} m".format(*(" ".join(f"{number:.6g}" for number in numbers) for numbers in center))
         yield phrase("{change} (moved by {distance:.4g} m)", change=text, distance=math.dist(*center))
     if axes[0] != axes[1]:
-        yield phrase("axes {old} -> {new}", old=" ".join(first[_PARTS[1]]), new=" ".join(second[_PARTS[1]]))
+        yield phrase("axes {old} -> {new}", old=" ".join(first[_POSE_PARTS[1]]), new=" ".join(second[_POSE_PARTS[1]]))
 
 
 def _tensor_texts(entries: Mapping[str, tuple[str, str]]) -> Iterator[Phrase | str]:
@@ -172,7 +172,7 @@ def _tensor_texts(entries: Mapping[str, tuple[str, str]]) -> Iterator[Phrase | s
     moments = {name: pair for name, pair in numbers.items() if name in _MOMENTS}
     if len(entries) <= _FEW or not moments or not all(old for old, _ in moments.values()):
         for name, (old, new) in entries.items():
-            yield "{} {} -> {} kg m2".format(name, *_short(old, new))
+            yield "{} {} -> {} kg m2".format(name, *_shorten_numbers(old, new))
         return
     largest = max(abs(old) for old, _ in moments.values())
     ratio = max(new / old for old, new in moments.values())

@@ -1,4 +1,4 @@
-"""The comparison of semantic descriptions (SRDF): groups, their states, end effectors and disabled collisions."""
+"""Compare semantic descriptions (SRDF): groups, states, end effectors and disabled collisions."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class _Entry:
     """A named element of a semantic description.
 
     Attributes:
-        tag: the tag.
-        name: the name; that of a state has its group before it.
-        values: the parts of the element with their values, which are empty for members of groups.
-        element: the element.
+        tag: the tag of the element.
+        name: the name. The name of a state begins with its group.
+        values: the parts of the element by name. The values of group members are empty.
+        element: the XML element.
     """
 
     tag: str
@@ -45,43 +45,45 @@ class _Entry:
 
 def compare_semantics(pair: FilePair) -> None:
     """Compare two versions of a semantic description."""
-    roots = pair.read(_root)
+    roots = pair.read(_read_root)
     if roots is not None:
         compare_roots(pair, *roots)
 
 
 def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
     """Compare two semantic descriptions by their root elements."""
-    old, new = ({(entry.tag, entry.name): entry for entry in _entries(root)} for root in (old_root, new_root))
-    renamed = dict(_renamed(old, new))
+    old, new = ({(entry.tag, entry.name): entry for entry in _read_entries(root)} for root in (old_root, new_root))
+    renamed = dict(_find_renamed(old, new))
     passive = {name for tag, name in new if tag == "passive_joint"}
     for key, entry in new.items():
         if key in old:
             _compare_entries(pair, old[key], entry, passive)
         elif key not in renamed.values():
-            pair.add(phrase("{entry} added", entry=_title(entry)), pair.location(entry.element.span()))
+            pair.add(phrase("{entry} added", entry=_entry_title(entry)), pair.location(entry.element.span()))
     for key, entry in old.items():
         if key in renamed:
-            text = phrase("{entry} renamed to '{name}'", entry=_title(entry), name=new[renamed[key]].name)
+            text = phrase("{entry} renamed to '{name}'", entry=_entry_title(entry), name=new[renamed[key]].name)
             location = pair.location(new[renamed[key]].element.span())
             pair.add(text, location, removal_reason(entry.tag, entry.name))
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
-            pair.add(phrase("{entry} removed", entry=_title(entry)), location, removal_reason(entry.tag, entry.name))
+            pair.add(
+                phrase("{entry} removed", entry=_entry_title(entry)), location, removal_reason(entry.tag, entry.name)
+            )
     for tag in _PAIRS:
-        _compare_pairs(pair, tag, *(_pairs(root, tag) for root in (old_root, new_root)))
+        _compare_pairs(pair, tag, *(_elements_by_pair(root, tag) for root in (old_root, new_root)))
 
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:
     """Return the groups, states and other named elements of a semantic description, or None if there are none."""
-    titles = [_title(entry) for entry in _entries(_root(version.file(path)))]
+    titles = [_entry_title(entry) for entry in _read_entries(_read_root(version.file(path)))]
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
 def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
     """Return the pairs of links whose collisions the semantic descriptions below a folder disable.
 
-    Expressions of xacro in the names of links, such as prefixes, count as empty.
+    Xacro expressions in the names of links, such as prefixes, count as empty.
     """
     pairs: set[frozenset[str]] = set()
     for file in walk(folder, (".srdf", ".srdf.xacro"))[0]:
@@ -95,7 +97,7 @@ def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
 
 
 def removal_reason(tag: str, name: str) -> Phrase | None:
-    """Return why it is breaking that an element of a semantic description has gone, or None if it is not."""
+    """Return the reason why removing an element of a semantic description is breaking, or None if it is not."""
     if tag == "group":
         return phrase("programs that plan for the group '{name}' do not find it", name=name)
     if tag == "group_state":
@@ -105,11 +107,11 @@ def removal_reason(tag: str, name: str) -> Phrase | None:
     return None
 
 
-def _root(file: Path) -> Element:
+def _read_root(file: Path) -> Element:
     return read_document(str(file)).root
 
 
-def _entries(root: Element) -> Iterator[_Entry]:
+def _read_entries(root: Element) -> Iterator[_Entry]:
     for element in root.elements():
         name = element.attributes.get("name", "")
         if element.tag not in _NAMED:
@@ -118,21 +120,21 @@ def _entries(root: Element) -> Iterator[_Entry]:
             name = f"{element.attributes.get('group', '')}/{name}"
             values = {part.attributes.get("name", ""): part.attributes.get("value", "") for part in element.elements()}
         elif element.tag == "group":
-            values = {_member(part): "" for part in element.elements()}
+            values = {_member_text(part): "" for part in element.elements()}
         else:
             values = {key: value for key, value in element.attributes.items() if key != "name"}
         yield _Entry(element.tag, name, values, element)
 
 
-def _member(element: Element) -> str:
+def _member_text(element: Element) -> str:
     """Return a member of a group in one line, such as ``chain base tip``."""
     return " ".join([element.tag, *element.attributes.values()])
 
 
-def _renamed(
+def _find_renamed(
     old: Mapping[tuple[str, str], _Entry], new: Mapping[tuple[str, str], _Entry]
 ) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
-    """Yield the old and new keys of elements that have other names and equal contents."""
+    """Yield the old and new keys of renamed elements, whose contents are equal."""
     added = [key for key in new if key not in old]
     for key, entry in old.items():
         if key in new or not entry.values:
@@ -147,7 +149,7 @@ def _is_same(old: _Entry, new: _Entry) -> bool:
     return old.tag == new.tag and dict(old.values) == dict(new.values)
 
 
-def _title(entry: _Entry) -> Phrase:
+def _entry_title(entry: _Entry) -> Phrase:
     return phrase("{tag} '{name}'", tag=term(entry.tag), name=entry.name)
 
 
@@ -162,14 +164,14 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive: Collecti
         elif not _are_equal(before, after):
             changes.append(f"{name} {before} -> {after}")
     if changes:
-        text = phrase("{entry}: {changes}", entry=_title(new), changes=joined_first(changes, MAX_NAMES))
+        text = phrase("{entry}: {changes}", entry=_entry_title(new), changes=joined_first(changes, MAX_NAMES))
         pair.add(text, pair.location(new.element.span()), _lost_joints_reason(pair.versions.old, old, new, passive))
 
 
 def _lost_joints_reason(version: Version, old: _Entry, new: _Entry, passive: Collection[str]) -> Phrase | None:
-    """Return why it is breaking that a group has other joints, or None if it is not.
+    """Return the reason why other joints in a group are breaking, or None if they are not.
 
-    A group that names a chain, links or other groups instead can still have the joints. Programs do not
+    A group defined by a chain, links or other groups can still contain the joints. Programs do not
     move fixed and passive joints.
     """
     added = [member for member in new.values if member not in old.values]
@@ -190,7 +192,7 @@ def _is_literal_joint(member: str) -> bool:
 
 
 def _fixed_joints(version: Version) -> set[str]:
-    """Return the fixed joints in the descriptions of a version, by their names as they are written."""
+    """Return the names, as written in the file, of the fixed joints in the descriptions of a version."""
     texts = (version.text(path) for path in version.paths((".urdf", ".xacro")))
     tags = (match[0] for text in texts for match in _JOINT_TAG.finditer(text))
     return {name[1] for tag in tags if _FIXED.search(tag) and (name := _NAME.search(tag))}
@@ -204,8 +206,8 @@ def _are_equal(old: str, new: str) -> bool:
         return False
 
 
-def _pairs(root: Element, tag: str) -> dict[tuple[str, ...], Element]:
-    """Return the elements about pairs of links, by the links in the order of their names."""
+def _elements_by_pair(root: Element, tag: str) -> dict[tuple[str, ...], Element]:
+    """Return the elements about pairs of links, by the sorted names of the links."""
     return {
         tuple(sorted((element.attributes.get("link1", ""), element.attributes.get("link2", "")))): element
         for element in root.elements(tag)

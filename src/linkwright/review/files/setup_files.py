@@ -1,4 +1,4 @@
-"""The comparison of ``setup.py``: executables, other entry points, and files that a package installs."""
+"""Compare ``setup.py`` files: executables, other entry points, and the files that a package installs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linkwright.review.versions import Version
 SETUP_FILE = "setup.py"
 _COMPARED = frozenset({"entry_points", "data_files", "packages"})
 _SHOWN = frozenset({"name", "version", "python_requires", "license"})
-"""The arguments of ``setup`` whose values are shown if they are texts."""
+"""The arguments of ``setup`` whose string values are shown."""
 
 
 def compare_setup_files(pair: FilePair) -> None:
@@ -99,7 +99,7 @@ def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
 
 
 def _entry_points(python: PythonFile, node: ast.expr | None) -> Iterator[Fact]:
-    """Yield the entry points of groups other than that of the executables."""
+    """Yield the entry points of all groups except the executables."""
     entries = None if node is None else python.resolved(node)
     if not isinstance(entries, ast.Dict):
         return

@@ -1,4 +1,4 @@
-"""Models and worlds in SDF that are written as templates of Jinja or empy, and read as far as they are XML."""
+"""Read the XML of SDF models and worlds that are Jinja or empy templates."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ _DECLARATION = re.compile(r"<\?xml\b[^>]*>")
 _STRING = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?P<text>[^\"'\\]*)\"")
 _ESCAPED = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
 _ROOTS = ("sdf", "gazebo")
-"""The tags of the root of a file in SDF; the second one is that of versions before SDF had its name."""
+"""The root tags of SDF files. The second tag is from versions before the name SDF."""
 
 
 def is_template(path: str) -> bool:
-    """Return whether a path is that of a template for SDF."""
+    """Return whether a path is a template for SDF."""
     return PurePosixPath(path).name.endswith(TEMPLATE_SUFFIXES)
 
 
 def template_elements(file: str) -> list[Element]:
-    """Return the elements of a template; expressions stay as texts.
+    """Return the elements of a template. Expressions remain as text.
 
     The result has the elements of all branches. A macro is an element ``<macro name="..." parameters="...">`` around
     its elements, and a variable that a statement sets is an element ``<set name="...">`` with the value. The other
-    statements and the XML declaration are left out. Lines are those of the file.
+    statements and the XML declaration are left out. Line numbers match the file.
 
     Raises:
         LinkwrightError: the template is not XML without its statements, or the file cannot be read.
     """
     text = read_bytes(file).decode("utf-8", errors="replace")
-    text = _EXPRESSION.sub(_escaped_expression, _DECLARATION.sub(_blank, _with_elements(text)))
+    text = _EXPRESSION.sub(_escape_expression, _DECLARATION.sub(_blank, _with_elements(text)))
     try:
         roots = list(parse_as_gazebo(f"<template>{text}</template>", file)[0].root.elements())
     except LinkwrightError:
@@ -50,7 +50,7 @@ def template_elements(file: str) -> list[Element]:
 
 
 def is_same_name_possible(old: str | None, new: str | None) -> bool:
-    """Return whether a text and an expression that replaces it, or is replaced by it, can have the same value."""
+    """Return whether a text and an expression, one replacing the other, can have the same value."""
     return old is not None and new is not None and old.count("{{") != new.count("{{")
 
 
@@ -59,7 +59,7 @@ def _without_root(element: Element) -> Iterator[Element]:
 
 
 def _with_elements(text: str) -> str:
-    """Return a template with elements instead of its macros and set variables, and without the other statements.
+    """Return a template with elements in place of macros and set variables, without the other statements.
 
     Statements in tags and comments are left out.
     """
@@ -76,17 +76,17 @@ def _with_elements(text: str) -> str:
             macro = _MACRO.fullmatch(statement) if is_between_tags else None
             open_macros.append(macro is not None)
             if macro is not None:
-                parameters = _escaped(_with_single_quotes(" ".join(macro["parameters"].split())))
+                parameters = _escape(_with_single_quotes(" ".join(macro["parameters"].split())))
                 result = f'<macro name="{macro["name"]}" parameters="{parameters}">'
         elif is_between_tags and (variable := _SET.fullmatch(statement)):
-            result = f'<set name="{variable["name"]}">{_escaped(_with_single_quotes(variable["value"]))}</set>'
+            result = f'<set name="{variable["name"]}">{_escape(_with_single_quotes(variable["value"]))}</set>'
         return result + "\n" * (statement.count("\n") - result.count("\n")) if result else _blank(match)
 
     return _STATEMENT.sub(element, text)
 
 
 def _with_single_quotes(expression: str) -> str:
-    """Return an expression in which the kind of quotes around texts makes no difference."""
+    """Return an expression with single quotes around its strings."""
     return _STRING.sub(lambda match: match[0] if match["text"] is None else f"'{match['text']}'", expression)
 
 
@@ -94,9 +94,9 @@ def _blank(match: re.Match[str]) -> str:
     return re.sub(r"[^\n]", " ", match[0])
 
 
-def _escaped_expression(match: re.Match[str]) -> str:
-    return f"{{{{{_escaped(_with_single_quotes(match['content']))}}}}}"
+def _escape_expression(match: re.Match[str]) -> str:
+    return f"{{{{{_escape(_with_single_quotes(match['content']))}}}}}"
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return "".join(_ESCAPED.get(character, character) for character in text)

@@ -1,4 +1,4 @@
-"""Changes of values in files, of which equal ones are one line, and many of a list are a summary."""
+"""Merge changed values: equal changes into one line, and many changes of a list into a summary."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from linkwright.review.list_changes import change_text
 from linkwright.review.merging import common_reason, name_edit
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
-"""The path of a list, and an item of it that has no name."""
+"""The path of a list item without a name."""
 _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
-"""A value that is a name, such as that of a topic, a frame or a file."""
+"""A value that is the name of a topic, a frame or a file, for example."""
 _MIN_ALIKE = 4
-"""The number of parts beside each other that gain or lose a value of the same name, from which they are one line."""
+"""The minimum number of sibling parts that gain or lose values with the same name in one line."""
 _MAX_ITEM_CHANGES = 6
-"""The maximum number of changes of the items of a list that are all shown."""
+"""The maximum number of changed list items that are shown separately."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class ValueChange:
 
     Attributes:
         name: the path of the value or the part.
-        kind: whether it is changed, or which version has it.
-        values: both values of a changed one; the value of another one; or the values of a part, with their names.
-        location: the location.
+        kind: whether the value is added, removed or changed.
+        values: both values of a change; the value of an addition or removal; or the values of a part, with their names.
+        location: the location of the value.
         reason: why the change is breaking; None if it is not.
     """
 
@@ -55,9 +55,9 @@ class ValueChange:
 
     @property
     def key(self) -> Hashable:
-        """A key that is equal for the same change of a value of the same name in other parts.
+        """A key that is equal for equal changes of values with the same name in different parts.
 
-        Names that are edited in the same way, such as by a prefix of topics, have the same change.
+        Names with the same edit, such as a new prefix of topics, are equal changes.
         """
         edit = self._edit
         if edit is not None:
@@ -67,7 +67,7 @@ class ValueChange:
 
     @property
     def place(self) -> Hashable | None:
-        """A key that is equal for values of the same name that parts beside each other gain or lose; or None."""
+        """A key that is equal for values with the same name which sibling parts add or remove; None for others."""
         outer, *rest = self.name.rsplit(".", 2)
         if self.kind == "changed" or len(rest) < 2:
             return None
@@ -75,7 +75,7 @@ class ValueChange:
 
     @property
     def _edit(self) -> Hashable | None:
-        """The part of a changed name that is replaced and its replacement; None for other values."""
+        """The replaced part of a changed name and its replacement; None for other values."""
         if self.kind != "changed" or not all(map(_NAME.fullmatch, self.values)):
             return None
         old, new = self.values
@@ -83,8 +83,8 @@ class ValueChange:
         return name_edit(old, new) if has_common else None
 
 
-def merged_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
-    """Yield the changes of a file: breaking ones alone, equal ones and those of long lists as one."""
+def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
+    """Yield the changes of a file. Breaking changes stay separate; equal changes and long lists are merged."""
     lists: dict[str, list[ValueChange]] = {}
     groups: dict[Hashable, list[ValueChange]] = {}
     for change in changes:
@@ -99,16 +99,16 @@ def merged_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
     for group in groups.values():
         others = alike[group[0].place]
         if group[0].place is None or len({change.key for change in others}) < _MIN_ALIKE:
-            yield _as_one(group)
+            yield _merge_group(group)
         elif group[0] is others[0]:
             yield _without_values(others)
     for name, group in lists.items():
         yield from (
-            [_as_one([change]) for change in group] if len(group) <= _MAX_ITEM_CHANGES else [_summary(name, group)]
+            [_merge_group([change]) for change in group] if len(group) <= _MAX_ITEM_CHANGES else [_summary(name, group)]
         )
 
 
-def _as_one(group: Sequence[ValueChange]) -> Change:
+def _merge_group(group: Sequence[ValueChange]) -> Change:
     first = group[0]
     effect = Effect.CHANGED if first.reason is None else Effect.BREAKING
     reason = common_reason(change.reason for change in group)

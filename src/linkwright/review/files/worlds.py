@@ -1,4 +1,4 @@
-"""The comparison of worlds and models in SDF."""
+"""Compare worlds and models in SDF."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from linkwright.review.files.sdf_numbers import (
     without_same_values,
 )
 from linkwright.review.files.templates import is_same_name_possible, is_template, template_elements
-from linkwright.review.left_names import left_names
+from linkwright.review.left_names import find_left_names
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
-from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
+from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.versions import Version
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
@@ -38,7 +38,7 @@ _NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|fra
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
 _SET_VARIABLE = re.compile(r"(?:^|.* )set [\w.]+(?: \d+)?")
-"""The path of a variable that a template sets; its name does not determine how the value is used."""
+"""The path of a variable that a template sets. Its name does not show the use of the value."""
 _UNSEEN = frozenset(
     {"collision", "inertial", "plugin", "sensor", "physics", "axis", "light", "gravity", "scene", "gui", "static"}
 )
@@ -49,53 +49,53 @@ _MIN_ALIKE = 3
 
 def compare_worlds(pair: FilePair) -> None:
     """Compare two versions of a file in SDF, without the models that it includes."""
-    elements = pair.read(_elements)
+    elements = pair.read(_read_elements)
     if elements is None:
         return
     changed = without_same_values(ElementComparison().child_differences(*elements))
     found = list(with_inertials(without_rounding(changed)))
     added = added_topics(found)
-    differences = with_replaced_plugins(found)
+    differences = merge_replaced_plugins(found)
     changes = [_WorldChange(difference, _breaking_reason(difference, added)) for difference in differences]
     alone: list[_WorldChange] = []
-    for group in _alike(changes):
+    for group in _group_alike(changes):
         parts = differing_parts([change.path for change in group])
         if len(group) < _MIN_ALIKE or not any(" " in part for part in parts):
             alone += group
             continue
         locations = tuple(location for change in group[1:] if (location := change.location(pair)) is not None)
         first = group[0]
-        text = _sentence(first.difference, first.path)
+        text = _difference_sentence(first.difference, first.path)
         pair.changes.append(
             Change(text, location=first.location(pair), other_names=tuple(parts[1:]), other_locations=locations)
         )
-    _add_alone(pair, alone)
-    pair.changes += _left_names(pair, *elements)
+    _report_separately(pair, alone)
+    pair.changes += _find_left_names(pair, *elements)
     if differences and not is_template(pair.new_path):
-        _add_scenes(pair, may_be_visible=any(map(_may_be_visible, differences)))
+        _report_scenes(pair, may_be_visible=any(map(_may_be_visible, differences)))
 
 
-def _left_names(pair: FilePair, old: Sequence[Element], new: Sequence[Element]) -> Iterator[Change]:
-    """Yield the plugins and sensors that name a link or joint that is gone.
+def _find_left_names(pair: FilePair, old: Sequence[Element], new: Sequence[Element]) -> Iterator[Change]:
+    """Yield the plugins and sensors that name a removed link or joint.
 
-    A name may be in a model that only the new version includes.
+    The name may exist in a model that only the new version includes.
     """
-    old_links, old_joints, old_models = (_names(old, tag) for tag in ("link", "joint", "include"))
-    new_links, new_joints, new_models = (_names(new, tag) for tag in ("link", "joint", "include"))
+    old_links, old_joints, old_models = (_names_of_tag(old, tag) for tag in ("link", "joint", "include"))
+    new_links, new_joints, new_models = (_names_of_tag(new, tag) for tag in ("link", "joint", "include"))
     if new_models <= old_models:
-        yield from left_names(new, old_links - new_links, old_joints - new_joints, pair.location)
+        yield from find_left_names(new, old_links - new_links, old_joints - new_joints, pair.location)
 
 
-def _names(elements: Sequence[Element], tag: str) -> set[str]:
-    """Return the names of all elements with a tag, or the addresses of included models."""
-    found = (each for element in elements for each in element.walk() if each.tag == tag)
+def _names_of_tag(elements: Sequence[Element], tag: str) -> set[str]:
+    """Return the names of all elements with a tag, or the URIs of included models."""
+    found = (descendant for element in elements for descendant in element.walk() if descendant.tag == tag)
     if tag == "include":
-        return {uri.text().strip() for each in found for uri in each.elements("uri")}
-    return {each.attributes["name"] for each in found if "name" in each.attributes}
+        return {uri.text().strip() for include in found for uri in include.elements("uri")}
+    return {named.attributes["name"] for named in found if "name" in named.attributes}
 
 
-def _add_scenes(pair: FilePair, *, may_be_visible: bool) -> None:
-    """Add the quantities of a model and images, which need the models that the file includes."""
+def _report_scenes(pair: FilePair, *, may_be_visible: bool) -> None:
+    """Report the quantities of a model and images. Both need the included models."""
     worlds = read_worlds(pair)
     if worlds is None:
         return
@@ -113,8 +113,8 @@ def _may_be_visible(difference: Difference) -> bool:
 
 
 def world_contents(version: Version, path: str) -> Phrase | None:
-    """Return the models of a world, or the links and joints of a model, and the plugins and sensors, or None."""
-    elements = _elements(version.file(path))
+    """Return the models of a world, or the links and joints of a model, with plugins and sensors; None if empty."""
+    elements = _read_elements(version.file(path))
     parts = [part for element in elements for part in names_in(element)]
     if _is_model(elements):
         parts += [part for element in elements for part in shapes_and_mass(element)]
@@ -122,9 +122,9 @@ def world_contents(version: Version, path: str) -> Phrase | None:
 
 
 def is_model(version: Version, path: str) -> bool:
-    """Return whether a file in SDF has models and no world; not for a file that cannot be read."""
+    """Return whether an SDF file has models and no world. Returns False if the file cannot be read."""
     try:
-        return _is_model(_elements(version.file(path)))
+        return _is_model(_read_elements(version.file(path)))
     except (LinkwrightError, OSError, ValueError, RecursionError):
         return False
 
@@ -135,7 +135,7 @@ def _is_model(elements: Sequence[Element]) -> bool:
 
 @dataclass(frozen=True)
 class _WorldChange:
-    """A difference between two worlds, and why it is breaking."""
+    """A difference between two worlds, and the reason why it is breaking."""
 
     difference: Difference
     reason: Phrase | None
@@ -158,17 +158,17 @@ class _WorldChange:
 
     @property
     def is_renamed(self) -> bool:
-        """Whether the change is that of a name."""
+        """Whether the change is a change of a name."""
         return path_of_renamed(self.difference, self.path) is not None
 
     def location(self, pair: FilePair) -> Location | None:
-        """Return the location in the new world, or in the old one of a removed element."""
+        """Return the location in the new world, or in the old world for a removed element."""
         place = self.difference.new_place or self.difference.old_place
         return None if place is None else pair.location(place.span, is_old=self.difference.new_place is None)
 
 
-def _alike(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
-    """Yield the changes in groups that are equal except for the names of the elements."""
+def _group_alike(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
+    """Yield groups of changes that are equal except for the names of the elements."""
     groups: dict[Hashable, list[_WorldChange]] = {}
     for number, change in enumerate(changes):
         is_alone = change.reason is not None or change.is_renamed
@@ -176,30 +176,30 @@ def _alike(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
     yield from groups.values()
 
 
-def _add_alone(pair: FilePair, changes: Sequence[_WorldChange]) -> None:
-    """Add changes, of which those whose paths differ in one word are one."""
+def _report_separately(pair: FilePair, changes: Sequence[_WorldChange]) -> None:
+    """Report changes. Equal changes whose paths differ in one word are reported as one."""
     merged = MergedPaths()
     firsts: list[_WorldChange] = []
     for change in changes:
         if merged.add(change.path, id(change) if change.is_renamed else change.kind) == len(firsts):
             firsts.append(change)
     for path, change in zip(merged.paths, firsts, strict=True):
-        pair.add(_sentence(change.difference, path), change.location(pair), change.reason)
+        pair.add(_difference_sentence(change.difference, path), change.location(pair), change.reason)
 
 
-def _elements(file: Path) -> list[Element]:
+def _read_elements(file: Path) -> list[Element]:
     if is_template(file.name):
         return template_elements(str(file))
     document, _ = parse_as_gazebo(read_bytes(file), str(file))
     return list(document.root.elements())
 
 
-def _sentence(difference: Difference, name: str) -> Phrase:
+def _difference_sentence(difference: Difference, name: str) -> Phrase:
     """Return a difference in one line.
 
     Args:
-        difference: the difference.
-        name: the path of the element, with the names of others that have the same difference.
+        difference: the difference between both versions.
+        name: the path of the element, with the names of other elements with the same difference.
     """
     old_path = path_of_renamed(difference, name)
     if old_path is not None:
@@ -224,7 +224,7 @@ def _sentence(difference: Difference, name: str) -> Phrase:
 
 
 def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
-    """Return why a difference breaks programs that use the world, or None if it does not."""
+    """Return the reason why a difference breaks programs that use the world, or None if it does not."""
     path = f"{difference.name} {difference.property}".strip()
     is_macro = difference.element is not None and difference.element.tag == "macro"
     if is_macro or _SET_VARIABLE.fullmatch(path) or is_same_name_possible(difference.old, difference.new):

@@ -1,4 +1,4 @@
-"""YAML files that include others: as items of lists, as keys of mappings, or by the tag ``!include``."""
+"""Resolve includes of YAML files: as items of lists, as keys of mappings, or by the tag ``!include``."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ import yaml
 from linkwright.diagnostics import phrase, quoted_names
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, LimitError, UnreadableFileError
-from linkwright.review.files.yaml_values import composed, yaml_values
+from linkwright.review.files.yaml_values import compose_yaml, yaml_values
 
-_KEYS = ("include", "$include")
+_INCLUDE_KEYS = ("include", "$include")
 _TAG = "!include"
 _MAX_DEPTH = 5
 _MAX_INCLUDES = 200
-"""The number of includes of a file, nested ones among them, that are read."""
+"""The maximum number of includes of a file that are read, including nested includes."""
 _MAX_BYTES = 1 << 20
 
 
 def with_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.Node, yaml.Node]:
-    """Return two documents with the contents of the files that only one of them includes, and name these files.
+    """Report files that only one of two documents includes, and return both documents with their contents.
 
-    A value that moves into an included file has then not changed. Documents with too many values stay as they are.
+    A value that moves into an included file is then unchanged. Documents with too many values stay as they are.
     """
     readers = _Includes(pair.old_file, pair.versions.old.root), _Includes(pair.new_file, pair.versions.new.root)
     marks = [dict(reader.names(root)) for reader, root in zip(readers, (old, new), strict=True)]
@@ -38,7 +38,7 @@ def with_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.
         line, column = marks[0][removed[0]]
         text = phrase("included files removed: {names}", names=quoted_names(removed))
         pair.add(text, Location(pair.old_path, line, column, is_old=True))
-    expanded = readers[0].expanded(old, removed), readers[1].expanded(new, added)
+    expanded = readers[0].expand(old, removed), readers[1].expand(new, added)
     try:
         for root in expanded if added or removed else ():
             yaml_values(root, {})
@@ -62,7 +62,7 @@ class _Includes:
     counter: Iterator[int] = field(default_factory=count)
 
     def names(self, node: yaml.Node) -> Iterator[tuple[str, tuple[int, int]]]:
-        """Yield the names of the included files that exist, with the line and the column of each."""
+        """Yield the names of the existing included files, with line and column."""
         name = self._name(node)
         if name is not None:
             yield name, (node.start_mark.line + 1, node.start_mark.column + 1)
@@ -77,27 +77,27 @@ class _Includes:
             for item in node.value:
                 yield from self.names(item)
 
-    def expanded(self, node: yaml.Node, names: Collection[str], depth: int = 0) -> yaml.Node:
+    def expand(self, node: yaml.Node, names: Collection[str], depth: int = 0) -> yaml.Node:
         """Return a node with the contents of some of the included files."""
         if not names or depth > _MAX_DEPTH:
             return node
         name = self._name(node)
         if name in names:
-            return self._content(name or "", node, depth) or node
+            return self._read_content(name or "", node, depth) or node
         if isinstance(node, yaml.MappingNode):
             items: list[tuple[yaml.Node, yaml.Node]] = []
             for key, value in node.value:
                 included = self._included_by_key(key, value)
-                content = self._content(included, key, depth) if included in names and included else None
+                content = self._read_content(included, key, depth) if included in names and included else None
                 if isinstance(content, yaml.MappingNode):
                     items += content.value
                 else:
-                    items.append((key, self.expanded(value, names, depth)))
+                    items.append((key, self.expand(value, names, depth)))
             return yaml.MappingNode(node.tag, items, node.start_mark, node.end_mark, node.flow_style)
         if isinstance(node, yaml.SequenceNode):
             values: list[yaml.Node] = []
             for item in node.value:
-                content = self.expanded(item, names, depth)
+                content = self.expand(item, names, depth)
                 is_list = content is not item and self._name(item) in names and isinstance(content, yaml.SequenceNode)
                 values += content.value if is_list else [content]
             return yaml.SequenceNode(node.tag, values, node.start_mark, node.end_mark, node.flow_style)
@@ -106,21 +106,23 @@ class _Includes:
     def _name(self, node: yaml.Node) -> str | None:
         """Return the name of the file that a node includes as a whole, or None for another node."""
         if isinstance(node, yaml.ScalarNode):
-            return self._existing(str(node.value)) if node.tag == _TAG else None
+            return self._existing_file(str(node.value)) if node.tag == _TAG else None
         if isinstance(node, yaml.MappingNode) and len(node.value) == 1:
             return self._included_by_key(*node.value[0])
         return None
 
     def _included_by_key(self, key: yaml.Node, value: yaml.Node) -> str | None:
-        is_include = isinstance(key, yaml.ScalarNode) and key.value in _KEYS and isinstance(value, yaml.ScalarNode)
-        return self._existing(str(value.value)) if is_include else None
+        is_include = (
+            isinstance(key, yaml.ScalarNode) and key.value in _INCLUDE_KEYS and isinstance(value, yaml.ScalarNode)
+        )
+        return self._existing_file(str(value.value)) if is_include else None
 
-    def _existing(self, name: str) -> str | None:
+    def _existing_file(self, name: str) -> str | None:
         file = self.file.parent / name
         is_inside = bool(name) and file.is_file() and file.resolve().is_relative_to(self.root.resolve())
         return name if is_inside and file.stat().st_size <= _MAX_BYTES else None
 
-    def _content(self, name: str, place: yaml.Node, depth: int) -> yaml.Node | None:
+    def _read_content(self, name: str, place: yaml.Node, depth: int) -> yaml.Node | None:
         """Return the content of an included file at the place of its include.
 
         Returns None if the file cannot be read, or if too many were read.
@@ -129,24 +131,24 @@ class _Includes:
         if next(self.counter) >= _MAX_INCLUDES:
             return None
         try:
-            root = composed(file.read_text(encoding="utf-8"))
+            root = compose_yaml(file.read_text(encoding="utf-8"))
         except (UnreadableFileError, OSError, ValueError):
             return None
         if root is None:
             return None
         inner = _Includes(file, self.root, self.counter)
-        root = inner.expanded(root, [inside for inside, _ in inner.names(root)], depth + 1)
-        _place(root, place)
+        root = inner.expand(root, [inside for inside, _ in inner.names(root)], depth + 1)
+        _move_to_place(root, place)
         return root
 
 
-def _place(node: yaml.Node, place: yaml.Node) -> None:
-    """Give a node and all nodes in it the place of another one."""
+def _move_to_place(node: yaml.Node, place: yaml.Node) -> None:
+    """Set the location of a node and all its descendants to the location of the include."""
     pending = [node]
     while pending:
-        each = pending.pop()
-        each.start_mark = place.start_mark
-        if isinstance(each, yaml.MappingNode):
-            pending += [part for pair in each.value for part in pair]
-        elif isinstance(each, yaml.SequenceNode):
-            pending += each.value
+        current = pending.pop()
+        current.start_mark = place.start_mark
+        if isinstance(current, yaml.MappingNode):
+            pending += [part for pair in current.value for part in pair]
+        elif isinstance(current, yaml.SequenceNode):
+            pending += current.value

@@ -1,4 +1,4 @@
-"""Items of lists in YAML that belong together in both versions, so that an inserted item does not shift the others."""
+"""Match list items of two YAML documents, so that an inserted item does not shift the following items."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _MAX_SIMILARITIES = 2_500
 """The maximum product of the numbers of different items of two lists that are aligned by their contents."""
 _MIN_SIMILARITY = 0.4
 _MAX_DEPTH = 4
-"""The depth in an item up to which values are compared one by one."""
+"""The maximum depth in an item at which values are compared one by one."""
 
 
 def item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
     """Return labels for the items of lists that have no name, by the identity of the item.
 
-    Items that belong together have the same label: the number of the new item.
+    Matched items have the same label: the number of the new item.
     """
     labels: dict[int, str] = {}
     visited: set[tuple[int, int]] = set()
@@ -39,14 +39,14 @@ def item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
                 (old_values[name], value) for key, value in second.value if (name := str(key.value)) in old_values
             ]
         elif is_structured_list(first) and is_structured_list(second):
-            pairs += _matched_items(first, second, labels, texts)
+            pairs += _match_items(first, second, labels, texts)
     return labels
 
 
-def _matched_items(
+def _match_items(
     old: yaml.Node, new: yaml.Node, labels: dict[int, str], texts: dict[int, str]
 ) -> list[tuple[yaml.Node, yaml.Node]]:
-    """Label the items of two lists, and return the items that belong together and differ."""
+    """Label the items of two lists, and return the matched items that differ."""
     old_names = {name: item for item in old.value if (name := name_of_item(item)) is not None}
     pairs = [(old_names[name], item) for item in new.value if (name := name_of_item(item)) in old_names]
     old_items, new_items = ([item for item in node.value if name_of_item(item) is None] for node in (old, new))
@@ -54,40 +54,40 @@ def _matched_items(
         return pairs
     labels |= {id(item): str(number) for number, item in enumerate(new_items)}
     labels |= {id(item): f"old {number}" for number, item in enumerate(old_items)}
-    for i, k in _aligned(old_items, new_items, texts):
+    for i, k in _align(old_items, new_items, texts):
         labels[id(old_items[i])] = labels[id(new_items[k])]
         pairs.append((old_items[i], new_items[k]))
     return pairs
 
 
-def _aligned(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, str]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of the items that belong together: the smallest edit, or for long lists a small one."""
-    old_texts, new_texts = ([_text(item, texts) for item in items] for items in (old, new))
+def _align(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, str]) -> Iterator[tuple[int, int]]:
+    """Yield the indexes of matched items: the smallest edit, or for long lists a small one."""
+    old_texts, new_texts = ([_content_text(item, texts) for item in items] for items in (old, new))
     anchors: list[tuple[int, int]] = []
     if len(old) * len(new) <= _MAX_SIMILARITIES:
-        anchors = _best_pairs(list(map(_facts, old)), list(map(_facts, new)))
+        anchors = _best_pairs(list(map(_count_values, old)), list(map(_count_values, new)))
     else:
         matcher = SequenceMatcher(None, old_texts, new_texts, autojunk=False)
         for start, new_start, size in matcher.get_matching_blocks():
             anchors += [(start + number, new_start + number) for number in range(size)]
     i, k = 0, 0
     for next_i, next_k in [*anchors, (len(old), len(new))]:
-        yield from ((i + a, k + b) for a, b in _similar_items(old[i:next_i], new[k:next_k]))
+        yield from ((i + a, k + b) for a, b in _match_similar_items(old[i:next_i], new[k:next_k]))
         if next_i < len(old):
             yield next_i, next_k
         i, k = next_i + 1, next_k + 1
 
 
-def _similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[tuple[int, int]]:
-    """Return the numbers of the items that are versions of the same one, in the order of both lists.
+def _match_similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[tuple[int, int]]:
+    """Return the indexes of matched items in the order of both lists.
 
-    Many items belong together by their order. Others do if they have something in common, or if as many have gone as
-    have come.
+    Many items match by their order. Others match if they have something in common, or if equally many items were
+    removed and added.
     """
     in_order = [(number, number) for number in range(min(len(old), len(new)))]
     if len(old) * len(new) > _MAX_SIMILARITIES:
         return in_order
-    old_facts, new_facts = (list(map(_facts, items)) for items in (old, new))
+    old_facts, new_facts = (list(map(_count_values, items)) for items in (old, new))
     if len(old) == len(new) and all(set(a) & set(b) for a, b in zip(old_facts, new_facts, strict=True)):
         return in_order
     if len(old) == len(new) and not any(isinstance(item, yaml.MappingNode) for item in (*old, *new)):
@@ -96,9 +96,9 @@ def _similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[t
 
 
 def _best_pairs(old: Sequence[Counter[str]], new: Sequence[Counter[str]]) -> list[tuple[int, int]]:
-    """Return the numbers of the items that are similar, in the order of both lists, with the most in common."""
+    """Return the indexes of the most similar items in the order of both lists."""
     best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
-    scores = [[_similarity(a, b) for b in new] for a in old]
+    scores = [[_values_similarity(a, b) for b in new] for a in old]
     for i, row in enumerate(scores, 1):
         for k, similarity in enumerate(row, 1):
             together = best[i - 1][k - 1] + similarity if similarity >= _MIN_SIMILARITY else 0.0
@@ -116,37 +116,37 @@ def _best_pairs(old: Sequence[Counter[str]], new: Sequence[Counter[str]]) -> lis
     return pairs[::-1]
 
 
-def _facts(node: yaml.Node) -> Counter[str]:
+def _count_values(node: yaml.Node) -> Counter[str]:
     """Return the paths of the values in an item, each with its value."""
-    return Counter(_leaves(node, "", 0))
+    return Counter(_walk_values(node, "", 0))
 
 
-def _leaves(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
+def _walk_values(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
     children: list[tuple[str, yaml.Node]] = []
     if isinstance(node, yaml.MappingNode):
         children = [(str(key.value), value) for key, value in node.value]
     elif isinstance(node, yaml.SequenceNode):
         children = [(str(number), value) for number, value in enumerate(node.value)]
     if not children or depth >= _MAX_DEPTH:
-        yield f"{path}={_text(node, {})}"
+        yield f"{path}={_content_text(node, {})}"
         return
     for key, value in children:
-        yield from _leaves(value, f"{path}.{key}", depth + 1)
+        yield from _walk_values(value, f"{path}.{key}", depth + 1)
 
 
-def _similarity(old: Counter[str], new: Counter[str]) -> float:
+def _values_similarity(old: Counter[str], new: Counter[str]) -> float:
     total = old.total() + new.total()
     return 2 * (old & new).total() / total if total else 1.0
 
 
-def _text(node: yaml.Node, texts: dict[int, str]) -> str:
+def _content_text(node: yaml.Node, texts: dict[int, str]) -> str:
     """Return the content of a node as text, which is equal for equal content."""
     if id(node) not in texts:
         if isinstance(node, yaml.MappingNode):
-            items = sorted(f"{key.value}: {_text(value, texts)}" for key, value in node.value)
+            items = sorted(f"{key.value}: {_content_text(value, texts)}" for key, value in node.value)
             texts[id(node)] = f"{{{', '.join(items)}}}"
         elif isinstance(node, yaml.SequenceNode):
-            texts[id(node)] = f"[{', '.join(_text(item, texts) for item in node.value)}]"
+            texts[id(node)] = f"[{', '.join(_content_text(item, texts) for item in node.value)}]"
         else:
             texts[id(node)] = str(node.value)
     return texts[id(node)]

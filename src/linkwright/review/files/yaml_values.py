@@ -1,4 +1,4 @@
-"""The values of YAML files by their paths, with their locations."""
+"""Read the values of YAML files by path, with their locations."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _TRUTH = re.compile(r"true|false|yes|no|on|off", re.IGNORECASE)
 
 
 class YamlType(Enum):
-    """The type that a parameter of ROS 2 gets from a value in YAML."""
+    """The type of a ROS 2 parameter with a value in YAML."""
 
     INTEGER = "integer"
     FLOAT = "double"
@@ -40,7 +40,7 @@ class YamlValue:
     """A scalar, or a list of scalars.
 
     Attributes:
-        text: the value as text, as it is written without quotes.
+        text: the value as written, without quotes.
         line: the line, starting at 1.
         column: the column, starting at 1.
         type: the type of the scalar, or of the items of the list; None for an empty list or an empty value.
@@ -55,12 +55,12 @@ class YamlValue:
 
     @property
     def is_null(self) -> bool:
-        """Whether the value is null, also as a key without a value."""
+        """Whether the value is null, including a key without a value."""
         return self.type is None and not self.is_list
 
     @property
     def shown(self) -> str:
-        """The value as text, also if it is null or empty."""
+        """The value as text, with a word for null and empty values."""
         return NULL if self.is_null else self.text or EMPTY
 
     @property
@@ -76,7 +76,7 @@ def read_yaml_values(text: str, labels: Mapping[int, str] | None = None) -> dict
     Raises:
         UnreadableFileError: the text is not YAML, or it has more values than a parameter file.
     """
-    root = composed(text)
+    root = compose_yaml(text)
     return {} if root is None else yaml_values(root, labels or {})
 
 
@@ -84,14 +84,14 @@ def yaml_values(root: yaml.Node, labels: Mapping[int, str]) -> dict[str, YamlVal
     """Return the values of a document by their paths.
 
     Args:
-        root: the document.
-        labels: the labels of items of lists in paths, by the identity of the item; by default, their names or numbers.
+        root: the root node of the document.
+        labels: the labels of list items in paths, by the identity of the item. Other items use their names or numbers.
 
     Raises:
         UnreadableFileError: the document has more values than a parameter file.
     """
     values: dict[str, YamlValue] = {}
-    for path, value in _values(root, "", labels):
+    for path, value in _walk_values(root, "", labels):
         values[path] = value
         if len(values) > _MAX_VALUES:
             raise LimitError(phrase("it has more than {count} values", count=_MAX_VALUES))
@@ -110,7 +110,7 @@ def read_yaml_text(file: Path) -> str:
     return file.read_text(encoding="utf-8")
 
 
-def composed(text: str) -> yaml.Node | None:
+def compose_yaml(text: str) -> yaml.Node | None:
     """Return the nodes of a YAML document, or None if it is empty.
 
     Raises:
@@ -123,25 +123,25 @@ def composed(text: str) -> yaml.Node | None:
 
 
 def value_of_text(text: str) -> YamlValue | None:
-    """Return the scalar, or the list of scalars, that a text is in YAML; None for other texts."""
+    """Return the YAML scalar or list of scalars of a text; None for other texts."""
     try:
-        root = composed(text)
+        root = compose_yaml(text)
     except UnreadableFileError:
         return None
     if root is None or isinstance(root, yaml.MappingNode) or is_structured_list(root):
         return None
-    return next(value for _, value in _values(root, "", {}))
+    return next(value for _, value in _walk_values(root, "", {}))
 
 
-def _values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Iterator[tuple[str, YamlValue]]:
+def _walk_values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Iterator[tuple[str, YamlValue]]:
     if isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             name = key.value if isinstance(key, yaml.ScalarNode) else "?"
-            yield from _values(value, f"{path}.{name}" if path else str(name), labels)
+            yield from _walk_values(value, f"{path}.{name}" if path else str(name), labels)
     elif is_structured_list(node):
         for number, item in enumerate(node.value):
             label = name_of_item(item) or labels.get(id(item)) or number
-            yield from _values(item, f"{path}[{label}]", labels)
+            yield from _walk_values(item, f"{path}[{label}]", labels)
     else:
         mark = node.start_mark
         is_list = isinstance(node, yaml.SequenceNode)
@@ -174,7 +174,7 @@ def _scalar_text(node: yaml.Node) -> str:
 
 
 def name_of_item(node: yaml.Node) -> str | None:
-    """Return the name of an item of a list, so that an inserted item does not shift the others."""
+    """Return the name of a list item, which identifies it independently of its position."""
     if not isinstance(node, yaml.MappingNode):
         return None
     names = {

@@ -1,1 +1,1 @@
-"""The comparison of launch files: actions with their conditions, namespaces and settings, and the other code."""
+"""Compare launch files: actions with their conditions, namespaces and settings, and the other code."""

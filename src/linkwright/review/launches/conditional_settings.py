@@ -1,4 +1,4 @@
-"""The settings of an action in both versions, also those that it has under conditions, such as ``<remap if="...">``."""
+"""Compare the settings of an action, including conditional ones such as ``<remap if="...">``."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline, condition_
 
 @dataclass(frozen=True)
 class SettingPair:
-    """A setting that differs.
+    """A setting whose value or condition differs.
 
     Attributes:
-        name: the name.
+        name: the name of the setting.
         old: the old value; None if there was none.
         new: the new value; None if there is none.
-        old_default: the old value that applies with the defaults of arguments; None if there was none.
-        new_default: the new value that applies with the defaults of arguments; None if there is none.
+        old_default: the old value with the defaults of the arguments; None if there was none.
+        new_default: the new value with the defaults of the arguments; None if there is none.
         has_defaults: whether both of these values are known.
     """
 
@@ -35,9 +35,9 @@ def changed_settings(
 ) -> Iterator[SettingPair]:
     """Yield the settings of an action that differ.
 
-    A setting that gets other conditions, or loses them, is one with all its values.
+    A setting whose conditions change is yielded once, with all its values.
     """
-    old_groups, new_groups = _by_name(old.settings), _by_name(new.settings)
+    old_groups, new_groups = _group_by_name(old.settings), _group_by_name(new.settings)
     for name in dict.fromkeys([*new_groups, *old_groups]):
         old_values, new_values = old_groups.get(name, {}), new_groups.get(name, {})
         has_conditions = any(map(condition_of_setting, (*old_values, *new_values)))
@@ -47,21 +47,21 @@ def changed_settings(
                 if before != after:
                     yield SettingPair(key, before, after, before, after)
             continue
-        old_default, is_old_known = _default(old_values, old_outline)
-        new_default, is_new_known = _default(new_values, new_outline)
-        texts = _text(old_values), _text(new_values)
+        old_default, is_old_known = _default_value(old_values, old_outline)
+        new_default, is_new_known = _default_value(new_values, new_outline)
+        texts = _format_values(old_values), _format_values(new_values)
         yield SettingPair(name, *texts, old_default, new_default, has_defaults=is_old_known and is_new_known)
 
 
-def _by_name(settings: Mapping[str, str]) -> dict[str, dict[str, str]]:
+def _group_by_name(settings: Mapping[str, str]) -> dict[str, dict[str, str]]:
     groups: dict[str, dict[str, str]] = {}
     for name, value in settings.items():
         groups.setdefault(without_condition(name), {})[name] = value
     return groups
 
 
-def _text(values: Mapping[str, str]) -> str | None:
-    """Return the values of a setting with their conditions, or None if there are none."""
+def _format_values(values: Mapping[str, str]) -> str | None:
+    """Return the values of a setting with their conditions as text, or None if there are none."""
     texts = [
         f"{value} ({condition})" if (condition := condition_of_setting(name)) else value
         for name, value in values.items()
@@ -69,11 +69,11 @@ def _text(values: Mapping[str, str]) -> str | None:
     return ", ".join(texts) if texts else None
 
 
-def _default(values: Mapping[str, str], outline: LaunchOutline) -> tuple[str | None, bool]:
-    """Return the value that applies with the defaults of arguments, and whether it is known."""
+def _default_value(values: Mapping[str, str], outline: LaunchOutline) -> tuple[str | None, bool]:
+    """Return the value with the defaults of the arguments, and whether it is known."""
     result = None
     for name, value in values.items():
-        holds = condition_holds(outline.resolved(condition_of_setting(name)))
+        holds = condition_holds(outline.resolve(condition_of_setting(name)))
         if holds is None:
             return None, False
         result = value if holds else result

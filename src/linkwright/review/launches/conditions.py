@@ -1,14 +1,14 @@
-"""The conditions of actions, evaluated with the defaults of arguments."""
+"""Evaluate the conditions of launch actions."""
 
 from __future__ import annotations
 
 import ast
 import re
 
-_PARTS = re.compile(r" and (?=(?:if|unless|after) )")
+_SEPARATOR = re.compile(r" and (?=(?:if|unless|after) )")
 _EVALUATION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
 _COMPARISON = re.compile(r"(?P<left>\S*) (?P<operator>==|!=) (?P<right>\S*)")
-_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _MAX_LENGTH = 500
 
 
@@ -19,7 +19,7 @@ def condition_holds(condition: str) -> bool | None:
         condition: conditions such as ``if true and unless $(eval 'a' == 'b')``, with values in place of variables.
             Empty if there is none.
     """
-    results = [_part_holds(part) for part in _PARTS.split(condition) if part]
+    results = [_part_holds(part) for part in _SEPARATOR.split(condition) if part]
     if False in results:
         return False
     return None if None in results else True
@@ -29,27 +29,27 @@ def _part_holds(part: str) -> bool | None:
     word, _, text = part.partition(" ")
     if word == "after":
         return True  # the delay of a timer
-    value = _truth(text.strip())
+    value = _evaluate_text(text.strip())
     return value if value is None or word == "if" else not value
 
 
-def _truth(text: str) -> bool | None:
+def _evaluate_text(text: str) -> bool | None:
     evaluation = _EVALUATION.fullmatch(text)
-    text = text if evaluation is None else _unquoted(evaluation[1].strip())
+    text = text if evaluation is None else _strip_quotes(evaluation[1].strip())
     if "$(" in text or "`" in text or len(text) > _MAX_LENGTH:
         return None
     if evaluation is None:
         comparison = _COMPARISON.fullmatch(text)
         if comparison is not None:
             return (comparison["left"] == comparison["right"]) == (comparison["operator"] == "==")
-        return _TRUTH.get(text.lower())
+        return _BOOLEANS.get(text.lower())
     try:
-        return _as_truth(_value(ast.parse(text, mode="eval").body))
+        return _to_bool(_evaluate_expression(ast.parse(text, mode="eval").body))
     except (SyntaxError, ValueError, RecursionError):
         return None
 
 
-def _unquoted(text: str) -> str:
+def _strip_quotes(text: str) -> str:
     """Return an expression without the quotes that an XML launch file needs around it."""
     for quote in "\"'":
         if len(text) > 1 and text[0] == text[-1] == quote and quote not in text[1:-1]:
@@ -57,34 +57,34 @@ def _unquoted(text: str) -> str:
     return text
 
 
-def _value(node: ast.expr) -> object:
+def _evaluate_expression(node: ast.expr) -> object:
     """Return the value of an expression of constants, comparisons and logic.
 
     Raises:
-        ValueError: the expression has another part.
+        ValueError: the expression contains anything else.
     """
     if isinstance(node, ast.Constant):
         return node.value
-    if isinstance(node, ast.Name) and node.id.lower() in _TRUTH:
-        return _TRUTH[node.id.lower()]
+    if isinstance(node, ast.Name) and node.id.lower() in _BOOLEANS:
+        return _BOOLEANS[node.id.lower()]
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return not _as_truth(_value(node.operand))
+        return not _to_bool(_evaluate_expression(node.operand))
     if isinstance(node, ast.BoolOp):
-        values = [_as_truth(_value(item)) for item in node.values]
+        values = [_to_bool(_evaluate_expression(item)) for item in node.values]
         return all(values) if isinstance(node.op, ast.And) else any(values)
     if isinstance(node, ast.Compare) and len(node.ops) == 1 and isinstance(node.ops[0], (ast.Eq, ast.NotEq)):
-        is_equal = _value(node.left) == _value(node.comparators[0])
+        is_equal = _evaluate_expression(node.left) == _evaluate_expression(node.comparators[0])
         return is_equal == isinstance(node.ops[0], ast.Eq)
     raise ValueError(ast.dump(node))
 
 
-def _as_truth(value: object) -> bool:
-    """Return the truth of a value as a condition of launch reads it.
+def _to_bool(value: object) -> bool:
+    """Return a value as a boolean, as launch converts a condition.
 
     Raises:
         ValueError: the value is neither true nor false.
     """
-    truth = _TRUTH.get(str(value).lower())
+    truth = _BOOLEANS.get(str(value).lower())
     if truth is None:
         raise ValueError(value)
     return truth

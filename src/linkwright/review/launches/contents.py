@@ -1,4 +1,4 @@
-"""The contents of an added launch file in one line."""
+"""Summarize an added launch file in one line."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ _KINDS = (
     "argument",
 )  # fmt: skip
 _MAX_SETTINGS = 8
-"""The number of settings of each action that the line shows."""
+"""The maximum number of settings of each action in the line."""
 
 
 def launch_contents(version: Version, path: str) -> Phrase | None:
     """Return the nodes, processes, includes, parameters and arguments of a launch file, or None if there are none.
 
     Args:
-        version: the version that has the file.
+        version: the version that contains the file.
         path: the path of the file, relative to the root.
 
     Raises:
-        LinkwrightError: the file cannot be read; also as `UnreadableFileError`, `OSError` and `ValueError`.
+        LinkwrightError, UnreadableFileError, OSError, ValueError: the file cannot be read.
     """
     entries = read_outline(version.file(path), version.root).entries
     entries = [entry for entry in entries if entry.kind in _KINDS and not (entry.kind == READING and entry.settings)]
     shown = sorted(entries, key=lambda entry: _KINDS.index(entry.kind))
-    titles = list(dict.fromkeys(map(_with_settings, shown)))
+    titles = list(dict.fromkeys(map(_title_with_settings, shown)))
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
-def _with_settings(entry: Entry) -> Phrase:
+def _title_with_settings(entry: Entry) -> Phrase:
     """Return the title of an action with its settings, such as the default of an argument."""
     items = settings_text(entry, _MAX_SETTINGS)
     if entry.kind == READING:

@@ -1,4 +1,4 @@
-"""The names that nodes have without being given one, and their scripts, in the sources of the repository."""
+"""Find the default names of nodes, and their scripts, in the sources of the repository."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.review.sources.reading import read_source_names
 
 @lru_cache(maxsize=256)
 def default_name(root: Path, program: str) -> str | None:
-    """Return the name that a node has without being given one, or None if the sources do not show it.
+    """Return the default name of a node, or None if the sources do not contain it.
 
     Args:
         root: the folder of the repository.
@@ -26,14 +26,14 @@ def default_name(root: Path, program: str) -> str | None:
     folder = package_folders(root).get(package)
     if folder is None or not name:
         return None
-    files = _sources_of_class(folder, name.rpartition("::")[2]) if "::" in name else _modules(folder, name)
+    files = _sources_of_class(folder, name.rpartition("::")[2]) if "::" in name else _module_paths(folder, name)
     names = {item.name for file in files for item in read_source_names(file).names if item.kind is NameKind.NODE}
     return names.pop() if len(names) == 1 else None
 
 
 @lru_cache(maxsize=256)
 def script_of(root: Path, program: str) -> Path | None:
-    """Return the script in Python that a node runs, or None if the repository does not have it, or several.
+    """Return the Python script that a node runs, or None if the repository has none or several.
 
     Args:
         root: the folder of the repository.
@@ -43,9 +43,9 @@ def script_of(root: Path, program: str) -> Path | None:
     folder = package_folders(root).get(package)
     if folder is None or not name or "/" in name or "$" in name or "*" in name:
         return None
-    modules = _modules(folder, name)
+    modules = _module_paths(folder, name)
     names = (name,) if name.endswith(".py") else (name, f"{name}.py")
-    scripts = modules or [file for each in names for file in sorted(folder.rglob(each)) if file.is_file()]
+    scripts = modules or [file for name in names for file in sorted(folder.rglob(name)) if file.is_file()]
     return scripts[0] if len(scripts) == 1 else None
 
 
@@ -62,11 +62,13 @@ def _sources_of_class(folder: Path, name: str) -> list[Path]:
     return [file for file in files if constructor.search(file.read_text("utf-8", errors="replace"))]
 
 
-def _modules(folder: Path, executable: str) -> list[Path]:
-    """Return the module of an executable of a package in Python."""
+def _module_paths(folder: Path, executable: str) -> list[Path]:
+    """Return the modules that can contain an executable of a Python package."""
     setup = folder / "setup.py"
     if not setup.is_file():
         return []
     programs = read_setup(SourceText(str(setup), setup.read_text("utf-8", errors="replace"))).entry_points
-    modules = [folder / f"{each.module.replace('.', '/')}.py" for each in programs if each.executable == executable]
+    modules = [
+        folder / f"{program.module.replace('.', '/')}.py" for program in programs if program.executable == executable
+    ]
     return [module for module in modules if module.is_file()]

@@ -1,4 +1,4 @@
-"""The rules for breaking changes of launch files: names of nodes, topics and arguments that others use."""
+"""Decide which changes of launch files are breaking: other programs use nodes, topics and arguments."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from linkwright.review.list_changes import list_items
 _USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
 """Programs that offer nothing to other programs."""
 _JOINT_STATES = "joint_state_publisher"
-"""The beginning of the names of two packages that publish the same."""
+"""The common prefix of the names of two packages that publish the same topics."""
 _SPAWNING = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
-"""Programs that tell another program once to create a robot, and offer nothing themselves."""
+"""Programs that request a robot from another program and exit. They offer nothing themselves."""
 _SPAWNING_FILE = re.compile(r"spawn|create")
 """The names of included files and commands that create robots."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
@@ -45,15 +45,15 @@ _NAMES_OF_NODES = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remap
 _NAME_ARGUMENT = re.compile(
     r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
 )
-"""The arguments whose values are, by their names, names that other programs use."""
+"""The arguments whose values, judging by the argument name, are names that other programs use."""
 _MIN_SIMILARITY_OF_NAMES = 0.75
 _NAMES_OF_PROGRAMS = {
     "robot_localization/ekf_node": "ekf_filter_node",
     "robot_localization/ukf_node": "ukf_filter_node",
 }
-"""The names of nodes that are not given one, where the programs have other names."""
-_TRUTH = ("true", "false")
-_CODE = re.compile(r"\w\(")
+"""The default names of nodes that differ from the name of the program."""
+_BOOLEANS = ("true", "false")
+_CALL = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
 _EXPRESSION = "$(eval "
 """The beginning of an expression, whose value is unknown."""
@@ -63,7 +63,7 @@ _PUBLISHED_TOPIC = re.compile(
     r"[ ._](\w+_)?(pub|publish|published|publisher|out|output)_(\w+_)?topic(_name)?$|"
     r"[ ._](\w+_)?topic(_name)?_(pub|publish|publisher|out|output)$"
 )
-"""The parameters whose names say that they are the name of a topic that the node publishes."""
+"""The parameters that, judging by their name, contain the name of a published topic."""
 _TOPIC = re.compile(r"[~/\w]+")
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
@@ -71,7 +71,7 @@ _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
 _NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
 _Use = tuple[Entry, str, Phrase]
-"""An action, its setting that uses an argument, and why a new default of the argument is breaking for it."""
+"""An action, its setting that uses an argument, and the reason why a new default of the argument is breaking."""
 _ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
@@ -79,24 +79,24 @@ _ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 def removal_reason(
     entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, stops_nodes: bool = False
 ) -> Phrase | None:
-    """Return why removing a launch action is a breaking change, or None if it is not.
+    """Return the reason why removing a launch action is breaking, or None if it is not.
 
     Args:
         entry: the action.
-        outline: the old file, which contains it.
-        new: the new file.
+        outline: the outline of the old file, which contains the action.
+        new: the outline of the new file.
         stops_nodes: whether the action includes a file with nodes that nothing else starts in the new version.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
-        return value_reason(entry.name, is_ros1=outline.is_ros1)
+        return argument_removal_reason(entry.name, is_ros1=outline.is_ros1)
     if entry.kind == READING:
         return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
-    if condition_holds(_condition(entry, outline)) is False:
+    if condition_holds(_resolve_condition(entry, outline)) is False:
         return None
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
-    if _spawns(entry):
-        return None if _spawns_as_much(outline, new) else phrase("the robot or model is not spawned any more")
+    if _is_spawner(entry):
+        return None if _spawns_as_many(outline, new) else phrase("the robot or model is not spawned any more")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
     if entry.kind == "include":
@@ -115,14 +115,14 @@ def removal_reason(
     return _served_reason(entry, names, new)
 
 
-def _spawns(entry: Entry) -> bool:
-    """Return whether a node tells a simulator once to create a robot or model."""
+def _is_spawner(entry: Entry) -> bool:
+    """Return whether a node requests a robot or model from a simulator and exits."""
     return entry.kind == "node" and _SPAWNING.fullmatch(entry.name) is not None and "remove" not in entry.name
 
 
-def _spawns_as_much(old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether a file creates as many robots as before, or includes another file that may do it."""
-    counts = [sum(map(_spawns, outline.entries)) for outline in (old, new)]
+def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether a file creates as many robots as before, or includes another file that may create them."""
+    counts = [sum(map(_is_spawner, outline.entries)) for outline in (old, new)]
     known = {entry.name for entry in old.entries}
     may_include = any(_SPAWNING_FILE.search(entry.name) and entry.name not in known for entry in new.entries)
     return counts[1] >= counts[0] or may_include
@@ -134,19 +134,19 @@ def _publishes_states(outline: LaunchOutline) -> bool:
 
 
 def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether an action of the new file may start the node of a removed one, such as with another condition."""
-    if (entry.kind, entry.name) != (other.kind, other.name) or condition_holds(_condition(other, new)) is False:
+    """Return whether a new action may start the node of a removed one, for example under another condition."""
+    if (entry.kind, entry.name) != (other.kind, other.name) or condition_holds(_resolve_condition(other, new)) is False:
         return False
     if _served_names(entry, old) != _served_names(other, new):
         return False
     return all(
-        _resolved_name(entry.settings.get(setting), old) == _resolved_name(other.settings.get(setting), new)
+        _resolve_name(entry.settings.get(setting), old) == _resolve_name(other.settings.get(setting), new)
         for setting in ("name", NAMESPACE)
     )
 
 
 def addition_reason(entry: Entry) -> Phrase | None:
-    """Return why adding a launch action is a breaking change, or None if it is not."""
+    """Return the reason why adding a launch action is breaking, or None if it is not."""
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _required_reason(entry)
     if entry.kind == READING and not entry.settings and entry.name not in _ALWAYS_SET:
@@ -158,15 +158,15 @@ def _required_reason(argument: Entry) -> Phrase:
     return phrase("callers must pass '{name}'", name=argument.name)
 
 
-def value_reason(name: str, *, is_ros1: bool = False) -> Phrase:
-    """Return why it is breaking that an argument is gone. ROS 1 refuses arguments that a file does not declare."""
+def argument_removal_reason(name: str, *, is_ros1: bool = False) -> Phrase:
+    """Return the reason why removing an argument is breaking. ROS 1 refuses arguments that a file does not declare."""
     if is_ros1:
         return phrase("launch files that pass '{name}' to the file fail", name=name)
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 
 def offers_nothing(entry: Entry) -> bool:
-    """Return whether other programs do not use the node."""
+    """Return whether other programs cannot use anything of the node."""
     patterns = (_USER_INTERFACE.match, _SPAWNING.fullmatch, _SHELL_SCRIPT.fullmatch)
     return any(matches(entry.name) is not None for matches in patterns)
 
@@ -174,15 +174,15 @@ def offers_nothing(entry: Entry) -> bool:
 def setting_reason(
     entry: Entry, setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return why a changed setting of an action is breaking, or None if it is not.
+    """Return the reason why a changed setting of an action is breaking, or None if it is not.
 
     Args:
         entry: the new action.
         setting: the name of the setting.
         old: its old value; None if there was none.
         new: its new value; None if there is none.
-        old_outline: the old file.
-        new_outline: the new file.
+        old_outline: the outline of the old file.
+        new_outline: the outline of the new file.
     """
     if entry.kind == READING:
         return addition_reason(entry)
@@ -192,9 +192,9 @@ def setting_reason(
         return _remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return _renaming_reason(old, new, old_outline, new_outline)
-    if entry.kind in ("node", "include") and setting == CONDITION and (_spawns(entry) or not offers_nothing(entry)):
-        held = condition_holds(old_outline.resolved(old or ""))
-        does_not_hold = condition_holds(new_outline.resolved(new or "")) is False
+    if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
+        held = condition_holds(old_outline.resolve(old or ""))
+        does_not_hold = condition_holds(new_outline.resolve(new or "")) is False
         return phrase("by default, it does not start any more") if held and does_not_hold else None
     if entry.kind != "node" or offers_nothing(entry):
         return None
@@ -203,7 +203,7 @@ def setting_reason(
         side = side_of(loaded_class(entry) or entry.name, source, new_outline.root)
         if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
-        if old is not None and old_outline.resolved(old) in _targets(entry, new_outline):
+        if old is not None and old_outline.resolve(old) in _remapping_targets(entry, new_outline):
             return None  # another topic of the node has the name now
         return _remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
     if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
@@ -214,27 +214,27 @@ def setting_reason(
     if forwarding is not None:
         return forwarding
     if setting == "arguments":
-        old_names = _names_in(entry, old, old_outline)
-        new_names = _names_in(entry, new, new_outline)
-        gone = [name for name in old_names if name not in new_names]
+        old_names = _names_in_arguments(entry, old, old_outline)
+        new_names = _names_in_arguments(entry, new, new_outline)
+        removed = [name for name in old_names if name not in new_names]
         is_unknown = any(_EXPRESSION in name for name in new_names)
-        return _served_reason(entry, gone, new_outline) if gone and not is_unknown else None
+        return _served_reason(entry, removed, new_outline) if removed and not is_unknown else None
     return _parameter_reason(setting, old, new, old_outline, new_outline)
 
 
 def _parameter_reason(
     setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return why a changed parameter is breaking: others use the frame that it names, or it has another type."""
+    """Return the reason why a changed parameter is breaking: it names a shared frame or topic, or its type differs."""
     if setting == _FRAME_PREFIX:
-        old_prefix, new_prefix = old_outline.resolved(old or ""), new_outline.resolved(new or "")
-        is_unknown = any(_CODE.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
+        old_prefix, new_prefix = old_outline.resolve(old or ""), new_outline.resolve(new or "")
+        is_unknown = any(_CALL.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
         if old_prefix == new_prefix or is_unknown:
             return None
         return phrase("programs that look up the frames by their old names do not find them")
     if old is None or new is None or not setting.startswith(PARAMETER):
         return None
-    old_name, new_name = old_outline.resolved(old), new_outline.resolved(new)
+    old_name, new_name = old_outline.resolve(old), new_outline.resolve(new)
     is_frame = offers_frame(setting.removeprefix(PARAMETER)) and "$(" not in old_name
     is_topic = _PUBLISHED_TOPIC.search(setting) is not None and _TOPIC.fullmatch(old_name) is not None
     if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
@@ -246,7 +246,7 @@ def _parameter_reason(
 
 
 def _literal_value(text: str) -> YamlValue | None:
-    """Return the value of a parameter, or None if its type is unknown: a word may be the name of a variable."""
+    """Return the value of a parameter, or None if its type is unknown. A word may be the name of a variable."""
     value = None if "$(" in text else value_of_text(text)
     is_word = value is not None and value.type in (YamlType.TEXT, YamlType.MIXED) and not text.startswith(("'", '"'))
     return None if is_word else value
@@ -265,17 +265,17 @@ def _argument_reason(
     if setting == "default" and old is not None and new is not None:
         return _default_reason(entry, old, new, old_outline, new_outline)
     if setting == "choices" and old is not None and new is not None:
-        gone = [item for item in list_items(old) if item not in list_items(new)]
-        if gone:
-            return phrase("callers that pass '{value}' fail", value=", ".join(gone))
+        removed = [item for item in list_items(old) if item not in list_items(new)]
+        if removed:
+            return phrase("callers that pass '{value}' fail", value=", ".join(removed))
     return None
 
 
 def _default_reason(
     argument: Entry, old: str, new: str, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return why another default is breaking: a node does not start, or a name that others use is another one."""
-    old_value, new_value = old_outline.resolved(old), new_outline.resolved(new)
+    """Return the reason why another default is breaking: a node does not start, or a shared name changes."""
+    old_value, new_value = old_outline.resolve(old), new_outline.resolve(new)
     if old_value == new_value:
         return None
     for short, long in ((old, new), (new, old)):
@@ -283,10 +283,16 @@ def _default_reason(
             if short is old:
                 return phrase("callers that pass the name of a file instead of its path fail")
             return phrase("callers that pass the path of a file instead of its name fail")
-    if old_value.lower() in _TRUTH and re.fullmatch(r"[a-z]\w*", new_value.lower()) and new_value.lower() not in _TRUTH:
+    if (
+        old_value.lower() in _BOOLEANS
+        and re.fullmatch(r"[a-z]\w*", new_value.lower())
+        and new_value.lower() not in _BOOLEANS
+    ):
         return phrase("callers that pass '{value}' fail", value=old_value)
     uses = list(_reasons_of_uses(argument.name, old_outline, new_outline))
-    stopped = list(dict.fromkeys(title(entry) for entry, setting, _ in _importance(uses) if setting == CONDITION))
+    stopped = list(
+        dict.fromkeys(title(entry) for entry, setting, _ in _sort_by_importance(uses) if setting == CONDITION)
+    )
     if len(stopped) > 1:
         return phrase("by default, {entries} do not start any more", entries=joined_first(stopped, MAX_NAMES))
     if stopped:
@@ -297,13 +303,13 @@ def _default_reason(
     return reason
 
 
-def _importance(uses: list[_Use]) -> list[_Use]:
-    """Return uses of an argument with those of static transforms last."""
+def _sort_by_importance(uses: list[_Use]) -> list[_Use]:
+    """Sort the uses of an argument so that static transforms come last."""
     return sorted(uses, key=lambda use: use[0].name.startswith(TRANSFORM_PUBLISHERS))
 
 
 def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[_Use]:
-    """Yield the settings of actions that use an argument and for which its new default is breaking."""
+    """Yield the uses of an argument in settings for which its new default is breaking."""
     variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in new_outline.entries:
         if entry.kind == "argument":
@@ -315,21 +321,21 @@ def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchO
                     yield entry, setting, reason
 
 
-def _condition(entry: Entry, outline: LaunchOutline) -> str:
-    return outline.resolved(entry.settings.get(CONDITION, ""))
+def _resolve_condition(entry: Entry, outline: LaunchOutline) -> str:
+    return outline.resolve(entry.settings.get(CONDITION, ""))
 
 
 def _served_names(entry: Entry, outline: LaunchOutline) -> list[str]:
-    return _names_in(entry, entry.settings.get("arguments"), outline)
+    return _names_in_arguments(entry, entry.settings.get("arguments"), outline)
 
 
-def _names_in(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
+def _names_in_arguments(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
     """Return the controllers or the frame in the arguments of a node, with the defaults of arguments."""
-    return served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolved(arguments or "")}, entry.span))
+    return served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolve(arguments or "")}, entry.span))
 
 
 def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase | None:
-    """Return why it is breaking that a node does not serve names any more, or None if another one does."""
+    """Return the reason why it is breaking that a node no longer serves names, or None if another node serves them."""
     is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
     others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
     served = {name for other in others for name in _served_names(other, new)}
@@ -344,9 +350,9 @@ def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase
 def _renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    old_name, new_name = _resolved_name(old, old_outline), _resolved_name(new, new_outline)
+    old_name, new_name = _resolve_name(old, old_outline), _resolve_name(new, new_outline)
     if (
-        _after_unknown(old_name) == _after_unknown(new_name)
+        _strip_known_prefix(old_name) == _strip_known_prefix(new_name)
         or _UNKNOWN_NAME.search(new_name)
         or _has_new_variable(old_name, new_name)
     ):
@@ -354,14 +360,14 @@ def _renaming_reason(
     return phrase("programs that use the names of the node, its topics or its services do not find them")
 
 
-def _after_unknown(name: str) -> str:
-    """Return a name from the last variable without a known value, which may begin with ``/``, or the whole name."""
+def _strip_known_prefix(name: str) -> str:
+    """Return the part of a name from its last unknown variable, or the whole name. The value may begin with ``/``."""
     match = _UNKNOWN_NAMESPACE.search(name)
     return name if match is None else match[1]
 
 
 def _is_name_of_program(entry: Entry, name: str) -> bool:
-    """Return whether a node may have a name without being given one, as far as the name of its program shows.
+    """Return whether a name may be the default name of a node, judging by its program.
 
     The program is an executable or the class of a component, such as ``map_server`` and ``nav2::MapServer``.
     """
@@ -371,9 +377,9 @@ def _is_name_of_program(entry: Entry, name: str) -> bool:
     return name_likeness(name, program) >= _MIN_SIMILARITY_OF_NAMES
 
 
-def _resolved_name(text: str | None, outline: LaunchOutline) -> str:
-    """Return a name with the defaults of arguments; empty for a name that is not given."""
-    resolved = outline.resolved(text or "").strip("/")
+def _resolve_name(text: str | None, outline: LaunchOutline) -> str:
+    """Return a name with the defaults of the arguments; empty for None."""
+    resolved = outline.resolve(text or "").strip("/")
     return _NEVER.sub("", resolved).strip("/")
 
 
@@ -386,38 +392,38 @@ def _remapping_reason(
     *,
     is_known: bool = False,
 ) -> Phrase | None:
-    """Return why it is breaking that a name is remapped otherwise, or None if the name is the same.
+    """Return the reason why another remapping of a name is breaking, or None if the resulting name is the same.
 
     Args:
         source: the name in the node.
         old: the old name outside of it; None if it was the same.
         new: the new name outside of it; None if it is the same.
-        old_outline: the old file.
-        new_outline: the new file.
-        is_known: whether the node is known to publish or serve the name, and not only to use it.
+        old_outline: the outline of the old file.
+        new_outline: the outline of the new file.
+        is_known: whether the node certainly publishes or serves the name.
     """
-    old_name = old_outline.resolved(source if old is None else old)
-    new_name = new_outline.resolved(source if new is None else new)
+    old_name = old_outline.resolve(source if old is None else old)
+    new_name = new_outline.resolve(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
-    if _CODE.search(new_name) or _has_new_variable(old_name, new_name):
+    if _CALL.search(new_name) or _has_new_variable(old_name, new_name):
         return None  # the name may be the same
     return name_reason(old_name) if is_known else possible_name_reason(old_name)
 
 
 def _has_new_variable(old: str, new: str) -> bool:
-    """Return whether a name has a variable without a known value that the old one does not have."""
+    """Return whether a new name has an unknown variable that the old name lacks."""
     return not set(_VARIABLE.findall(new)) <= set(_VARIABLE.findall(old))
 
 
-def _targets(entry: Entry, outline: LaunchOutline) -> set[str]:
+def _remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
     """Return the names to which an action remaps others."""
     settings = entry.settings.items()
-    return {outline.resolved(value) for name, value in settings if name.startswith(REMAPPING)}
+    return {outline.resolve(value) for name, value in settings if name.startswith(REMAPPING)}
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:
-    """Return whether the arguments of nodes contain the names, as a spawner's ``--controller-ros-args`` can."""
+    """Return whether arguments of nodes remap the names, for example ``--controller-ros-args`` of a spawner."""
     words = set(_NAME.findall(names))
     arguments = " ".join(entry.settings.get("arguments", "") for entry in outline.entries)
     return bool(words) and words <= set(_NAME.findall(arguments))

@@ -1,4 +1,4 @@
-"""The environment variables that launch files read."""
+"""Find the environment variables that launch files read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import READING, Entry
 from linkwright.review.launches.text import ExpressionTexts
 
-_READERS = re.compile(r"(os\.)?(environ\.get|getenv)")
+_READING_FUNCTIONS = re.compile(r"(os\.)?(environ\.get|getenv)")
 _ENVIRON = ("os.environ", "environ")
 _SUBSTITUTION = re.compile(r"\$\((?P<kind>env|optenv) (?P<name>\w+)(?P<default> [^()]*)?\)")
 _NAME = re.compile(r"\w+")
@@ -27,7 +27,7 @@ def python_readings(python: PythonFile) -> list[Entry]:
         if isinstance(node, ast.expr)
         for name, has_default in _read_names(node)
     )
-    return _entries(found)
+    return _make_entries(found)
 
 
 def markup_readings(values: Iterable[tuple[str, Span]]) -> list[Entry]:
@@ -37,23 +37,23 @@ def markup_readings(values: Iterable[tuple[str, Span]]) -> list[Entry]:
         for value, span in values
         for match in _SUBSTITUTION.finditer(value)
     )
-    return _entries(found)
+    return _make_entries(found)
 
 
 def _read_names(node: ast.expr) -> Iterator[tuple[ast.expr, bool]]:
-    """Yield the name of the variable that an expression reads, and whether it may be missing."""
+    """Yield the names of the variables that an expression reads, and whether each may be missing."""
     if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Load) and ast.unparse(node.value) in _ENVIRON:
         yield node.slice, False
     elif isinstance(node, ast.Call) and node.args:
         name = called_name(node)
-        if _READERS.fullmatch(name):
+        if _READING_FUNCTIONS.fullmatch(name):
             yield node.args[0], True
         elif name.rpartition(".")[2] == "EnvironmentVariable":
             yield node.args[0], len(node.args) + len(node.keywords) > 1
 
 
-def _entries(found: Iterable[tuple[str, bool, Span]]) -> list[Entry]:
-    """Return an entry for each variable, without a default if one of its places has none."""
+def _make_entries(found: Iterable[tuple[str, bool, Span]]) -> list[Entry]:
+    """Return an entry for each variable. It has a default only if every place that reads the variable has one."""
     entries: dict[str, Entry] = {}
     for name, has_default, span in found:
         if _NAME.fullmatch(name) and (name not in entries or not has_default):

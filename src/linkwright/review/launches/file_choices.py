@@ -1,4 +1,4 @@
-"""The arguments that choose the files of an action: an argument that chooses another file, or none any more."""
+"""Compare the arguments that choose the files of an action: such an argument may choose another file or none."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _SEPARATORS = frozenset(" ,'\"[]=")
 
 
 class FileChoices:
-    """The changes of the arguments that choose files in a launch file.
+    """Report changes of the arguments that choose files in a launch file.
 
     Args:
-        pair: the launch file.
+        pair: both versions of the launch file.
         old: the old outline, with the new names of arguments.
-        new: the new outline.
+        new: the outline of the new file.
     """
 
     def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
@@ -32,20 +32,20 @@ class FileChoices:
         self._seen: set[str] = set()
 
     def compare(self, old: Entry, new: Entry) -> None:
-        """Add the files of an action that depend on other arguments."""
-        old_files, new_files = set(_files(old, self._old)), set(_files(new, self._new))
-        gone, come = old_files - new_files, new_files - old_files
-        for before in sorted(gone):
-            for after in sorted(come):
-                is_same = self._old.resolved(before) == self._new.resolved(after)
-                is_lone = len(gone) == 1 and (not _names(before) or len(come) == 1)
+        """Report the files of an action that depend on other arguments."""
+        old_files, new_files = set(_file_paths(old, self._old)), set(_file_paths(new, self._new))
+        removed, added = old_files - new_files, new_files - old_files
+        for before in sorted(removed):
+            for after in sorted(added):
+                is_same = self._old.resolve(before) == self._new.resolve(after)
+                is_lone = len(removed) == 1 and (not _argument_names(before) or len(added) == 1)
                 if is_same or is_lone or _last_part(before) == _last_part(after):
                     self._compare_files(before, after, new)
 
     def _compare_files(self, before: str, after: str, entry: Entry) -> None:
-        arguments = {each.name for each in self._new.entries if each.kind == "argument"}
-        lost = (_names(before) - _names(after)) & arguments
-        old_file, new_file = self._old.resolved(before), self._new.resolved(after)
+        arguments = {argument.name for argument in self._new.entries if argument.kind == "argument"}
+        lost = (_argument_names(before) - _argument_names(after)) & arguments
+        old_file, new_file = self._old.resolve(before), self._new.resolve(after)
         is_known = not _VARIABLE.search(old_file + new_file)
         if lost:
             names = quoted_names(sorted(lost))
@@ -57,11 +57,11 @@ class FileChoices:
                     "{change}; by default, it is '{new}' instead of '{old}'", change=text, old=old_file, new=new_file
                 )
             self._add(text, entry, reason if is_used else None)
-        elif _names(before) and _names(after) and is_known and old_file != new_file:
+        elif _argument_names(before) and _argument_names(after) and is_known and old_file != new_file:
             text = phrase("by default, the file is '{new}' instead of '{old}'", old=old_file, new=new_file)
             self._add(text, entry, None)
-        elif not _names(before) and _names(after):
-            names = quoted_names(sorted(_names(after)))
+        elif not _argument_names(before) and _argument_names(after):
+            names = quoted_names(sorted(_argument_names(after)))
             text = phrase("the file '{file}' depends on {names} now", file=after, names=names)
             if is_known and old_file == new_file:
                 text = phrase("{change}; by default, it is the same as before", change=text)
@@ -80,20 +80,20 @@ class FileChoices:
         return any(name in include.settings for _, include in callers)
 
 
-def _files(entry: Entry, outline: LaunchOutline) -> Iterator[str]:
+def _file_paths(entry: Entry, outline: LaunchOutline) -> Iterator[str]:
     """Yield the paths of files in the name and the settings of an action."""
     if entry.has_value:
         return
     names = (entry.name,) if entry.kind in ("include", "parameters", "process") else ()
     for text in (*names, *entry.settings.values()):
-        for word in _words(text):
-            path = outline.resolved(word)
+        for word in _split_words(text):
+            path = outline.resolve(word)
             if "/" in path and (_FOLDER.match(path) or _FILE.search(path)):
                 yield word
 
 
-def _words(text: str) -> Iterator[str]:
-    """Yield the words of a text, such as of a command line, each with its substitutions."""
+def _split_words(text: str) -> Iterator[str]:
+    """Yield the words of a text, such as a command line. A substitution is not split."""
     word, depth = "", 0
     for character in text.replace("$(command ", " "):
         if depth == 0 and (character in _SEPARATORS or character == ")"):
@@ -107,7 +107,7 @@ def _words(text: str) -> Iterator[str]:
         yield word
 
 
-def _names(path: str) -> set[str]:
+def _argument_names(path: str) -> set[str]:
     return set(_VARIABLE.findall(path))
 
 

@@ -1,4 +1,4 @@
-"""The comparison of launch files: which arguments, nodes and files they have, with their settings."""
+"""Compare launch files: their arguments, nodes and included files, with their settings."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import addition_reason, removal_reason
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.included import IncludedActions, callers_of, file_with_moved_action
-from linkwright.review.launches.matching import MIN_SIMILARITY, matched_entries, replacements
+from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.readers_of_environment import reader_of
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.launches.renames import renamed_entry, renamed_names, with_new_names
+from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.settings import SettingChanges
-from linkwright.review.launches.titles import added_entry, joined_titles, removed_entry, title
+from linkwright.review.launches.titles import added_entry_text, join_titles, removed_entry_text, title
 from linkwright.review.launches.transforms import other_publisher
-from linkwright.review.launches.unused_arguments import add_unused_arguments
-from linkwright.review.list_changes import excerpts, shortened
+from linkwright.review.launches.unused_arguments import report_unused_arguments
+from linkwright.review.list_changes import differing_excerpts, shorten
 
 _MAX_SOURCE = 120
-"""The number of characters of a statement that are shown."""
+"""The maximum number of characters of a statement that are shown."""
 _MAX_STATEMENTS = 3
-"""The maximum number of changed statements that are each shown."""
+"""The maximum number of changed statements that are shown separately."""
 _VARIABLE = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
 """The names of variables and parameters in the texts of statements."""
 
@@ -41,8 +41,8 @@ def compare_launch_files(pair: FilePair) -> None:
         return
     old, new = outlines
     undeclared = _undeclared_arguments(pair, old, new)
-    renamed = renamed_names(old, new)
-    old = with_new_names(old, renamed)
+    renamed = find_renamed_names(old, new)
+    old = rename_in_outline(old, renamed)
     old_names = {new_name: old_name for old_name, new_name in renamed.items()}
     included = (
         IncludedActions(pair.versions.old, pair.old_path, old),
@@ -51,84 +51,84 @@ def compare_launch_files(pair: FilePair) -> None:
     settings = SettingChanges(pair, old, new, renamed, included[1])
     choices = FileChoices(pair, old, new)
     settings.add_renamed()
-    gone: list[Entry] = []
-    come: list[Entry] = []
+    removed: list[Entry] = []
+    added: list[Entry] = []
     kept: list[Entry] = []
-    for old_entry, new_entry in matched_entries(old.entries, new.entries):
+    for old_entry, new_entry in match_entries(old.entries, new.entries):
         if old_entry is not None and new_entry is not None:
             settings.compare(old_entry, new_entry)
             choices.compare(old_entry, new_entry)
             kept.append(old_entry)
         elif old_entry is not None:
-            gone.append(old_entry)
+            removed.append(old_entry)
         elif new_entry is not None:
-            come.append(new_entry)
-    gone, come = ([entry for entry in entries if not _keeps_name(entry)] for entries in (gone, come))
+            added.append(new_entry)
+    removed, added = ([entry for entry in entries if not _keeps_name(entry)] for entries in (removed, added))
     new_paths = {
         file.old_path: file.new_path for file in pair.versions.changed_files if file.old_path and file.new_path
     }
-    replaced = replacements(gone, come, new_paths)
+    replaced = find_replacements(removed, added, new_paths)
     for old_entry, new_entry in replaced:
-        _add_replaced(pair, renamed_entry(old_entry, old_names), new_entry, outlines)
+        _report_replaced(pair, rename_in_entry(old_entry, old_names), new_entry, outlines)
         settings.compare(old_entry, new_entry)
         choices.compare(old_entry, new_entry)
     settings.add_groups()
-    gone = [entry for entry in gone if all(entry is not other for other, _ in replaced)]
-    come = [entry for entry in come if all(entry is not other for _, other in replaced)]
-    for name in {entry.name for entry in gone if entry.kind == "argument"} & undeclared.keys():
+    removed = [entry for entry in removed if all(entry is not other for other, _ in replaced)]
+    added = [entry for entry in added if all(entry is not other for _, other in replaced)]
+    for name in {entry.name for entry in removed if entry.kind == "argument"} & undeclared.keys():
         text = phrase("argument '{name}' removed", name=name)
         reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
         pair.add(text, pair.location(undeclared.pop(name).span), reason)
-        gone = [entry for entry in gone if (entry.kind, entry.name) != ("argument", name)]
+        removed = [entry for entry in removed if (entry.kind, entry.name) != ("argument", name)]
     for name, entry in undeclared.items():
         text = phrase("{entry} uses argument '{name}', which is not declared", entry=title(entry), name=name)
         reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
         pair.add(text, pair.location(entry.span), reason)
-    add_unused_arguments(pair, old, new, [*kept, *(entry for entry, _ in replaced)])
-    if gone or come:
-        _add_lone_entries(pair, gone, come, included, old_names)
+    report_unused_arguments(pair, old, new, [*kept, *(entry for entry, _ in replaced)])
+    if removed or added:
+        _report_lone_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
 
 
-def _add_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
-    """Add an action that replaces another one, or a parameter with a new name."""
+def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
+    """Report an action that replaces another one, or a parameter with a new name."""
     location = pair.location(new_entry.span)
     if old_entry.kind != SERVER_PARAMETER:
         pair.add(phrase("{old} replaced by {new}", old=title(old_entry), new=title(new_entry)), location)
         return
     old, new = outlines
     text = phrase("{entry} renamed to '{name}'", entry=title(old_entry), name=new_entry.name)
-    name = old.resolved(old_entry.name)
-    names = {new.resolved(entry.name).strip("/") for entry in new.entries if entry.kind == SERVER_PARAMETER}
+    name = old.resolve(old_entry.name)
+    names = {new.resolve(entry.name).strip("/") for entry in new.entries if entry.kind == SERVER_PARAMETER}
     pair.add(text, location, None if name.strip("/") in names else name_reason(name))
 
 
-def _add_lone_entries(
+def _report_lone_entries(
     pair: FilePair,
-    gone: Sequence[Entry],
-    come: Sequence[Entry],
+    removed: Sequence[Entry],
+    added: Sequence[Entry],
     included: tuple[IncludedActions, IncludedActions],
     old_names: Mapping[str, str],
 ) -> None:
-    """Add the actions that only one version has, and those that are in an included file of the other version."""
+    """Report the added, removed and moved actions."""
     old_included, new_included = included
-    stopped = old_included.all_started() - new_included.all_started()
+    stopped = old_included.all_started_programs() - new_included.all_started_programs()
     moved: dict[tuple[str, bool], list[Entry]] = {}
-    for entry in come:
+    for entry in added:
         file = old_included.lone_file(entry, new_included)
         file = file or file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
         if file is None:
-            pair.add(added_entry(entry), pair.location(entry.span), addition_reason(entry))
+            pair.add(added_entry_text(entry), pair.location(entry.span), addition_reason(entry))
         else:
             moved.setdefault((file, False), []).append(entry)
-    for entry in gone:
+    for entry in removed:
         file = new_included.lone_file(entry, old_included)
         if file is not None:
             moved.setdefault((file, True), []).append(entry)
             continue
-        written = renamed_entry(entry, old_names)
-        text, location = removed_entry(written), pair.location(entry.span, is_old=True)
+        written = rename_in_entry(entry, old_names)
+        text, location = removed_entry_text(written), pair.location(entry.span, is_old=True)
         reader = reader_of(pair.versions.new, entry.name, pair.new_path) if entry.kind == READING else None
         if reader is not None:
             pair.add(phrase("{change}; {path} uses it", change=text, path=reader), location)
@@ -142,12 +142,12 @@ def _add_lone_entries(
                 phrase("{change}; {entry} may publish its transform", change=text, entry=title(publisher)), location
             )
             continue
-        stops_nodes = entry.kind == "include" and bool(old_included.started(entry) & stopped)
+        stops_nodes = entry.kind == "include" and bool(old_included.started_programs(entry) & stopped)
         pair.add(
             text, location, removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes)
         )
     for (file, is_old), entries in moved.items():
-        titles = joined_titles(entries)
+        titles = join_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)
         if is_old:
             text = phrase("{entry} moved to {file}", entry=titles, file=file)
@@ -155,17 +155,17 @@ def _add_lone_entries(
 
 
 def _undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> dict[str, Entry]:
-    """Return the arguments that only the new version uses without declaring them, each with an action that uses it."""
+    """Return the arguments that only the new version uses undeclared, each with an action that uses it."""
     if not is_launch_file_name(pair.new_path):
         return {}
-    old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared()
-    new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared()
+    old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared_arguments()
+    new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared_arguments()
     names = {name: entry for name, entry in new_names.items() if name not in old_names}
     return {name: entry for name, entry in names.items() if not _is_declared_by_caller(pair, name)}
 
 
 def _is_declared_by_caller(pair: FilePair, name: str) -> bool:
-    """Return whether a launch file that includes this one passes an argument, or has one of this name itself."""
+    """Return whether a launch file that includes this one passes or declares the argument."""
     return any(
         name in include.settings or (not outline.is_ros1 and name in outline.values)
         for outline, include in callers_of(pair.versions.new, pair.new_path, name)
@@ -177,65 +177,65 @@ def _keeps_name(entry: Entry) -> bool:
 
 
 def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
-    """Compare what is not an action: one changed statement as it is written, others in one sentence.
+    """Compare the code besides the actions: report a few changed statements as written, more of them in one sentence.
 
     A statement that uses a name with another value differs although it is written as before. The value is reported.
     """
     if [part.text for part in old.code] == [part.text for part in new.code]:
         return
-    gone, come = _without_common(old.code, new.code), _without_common(new.code, old.code)
-    if _differ_in_names(gone, come):
+    removed, added = _without_common(old.code, new.code), _without_common(new.code, old.code)
+    if _differ_in_names(removed, added):
         return
-    same = {part.source for part in gone} & {part.source for part in come}
+    same = {part.source for part in removed} & {part.source for part in added}
     if same:
-        gone, come = ([part for part in parts if part.source not in same] for parts in (gone, come))
+        removed, added = ([part for part in parts if part.source not in same] for parts in (removed, added))
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
-        gone += [part for part in old.definitions if part.source not in new_sources]
-        come += [part for part in new.definitions if part.source not in old_sources]
-    come = _without_failures(pair, gone, come)
-    if not gone and not come:
+        removed += [part for part in old.definitions if part.source not in new_sources]
+        added += [part for part in new.definitions if part.source not in old_sources]
+    added = _report_failures(pair, removed, added)
+    if not removed and not added:
         return
-    location = pair.location(come[0].span) if come else None
-    if gone and not come:
-        location = pair.location(gone[0].span, is_old=True)
-    if 1 <= len(gone) == len(come) <= _MAX_STATEMENTS and all(map(_are_versions, gone, come)):
-        for old_part, new_part in zip(gone, come, strict=True):
-            before, after = excerpts(old_part.source, new_part.source)
+    location = pair.location(added[0].span) if added else None
+    if removed and not added:
+        location = pair.location(removed[0].span, is_old=True)
+    if 1 <= len(removed) == len(added) <= _MAX_STATEMENTS and all(map(_are_versions, removed, added)):
+        for old_part, new_part in zip(removed, added, strict=True):
+            before, after = differing_excerpts(old_part.source, new_part.source)
             pair.add(phrase("other code: {old} -> {new}", old=before, new=after), pair.location(new_part.span))
     else:
-        pair.add(_code_text(gone, come), location)
+        pair.add(_code_text(removed, added), location)
 
 
-def _without_failures(pair: FilePair, gone: Sequence[CodePart], come: Sequence[CodePart]) -> list[CodePart]:
-    """Add the new conditions under which the launch ends with an error, and return the other new statements."""
-    known = {part.failing_condition for part in gone}
-    others = list(come)
-    for part in come:
+def _report_failures(pair: FilePair, removed: Sequence[CodePart], added: Sequence[CodePart]) -> list[CodePart]:
+    """Report new conditions under which the launch fails, and return the other new statements."""
+    known = {part.failing_condition for part in removed}
+    others = list(added)
+    for part in added:
         condition = part.failing_condition
         if condition and condition not in known:
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
-            text = phrase("added: {code}", code=shortened(part.source, _MAX_SOURCE))
+            text = phrase("added: {code}", code=shorten(part.source, _MAX_SOURCE))
             pair.add(text, pair.location(part.span), reason)
             others = [other for other in others if other is not part and other.source != f"if {condition}: ..."]
     return others
 
 
-def _code_text(gone: Sequence[CodePart], come: Sequence[CodePart]) -> Phrase:
-    """Return the sentence about changed statements, with the first one."""
-    parts = come or gone
-    code = shortened(parts[0].source, _MAX_SOURCE)
-    if gone and come:
+def _code_text(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase:
+    """Return the sentence about changed statements, which quotes the first one."""
+    parts = added or removed
+    code = shorten(parts[0].source, _MAX_SOURCE)
+    if removed and added:
         return phrase("other code changed, such as {code}", code=code)
-    text = phrase("other code added: {code}", code=code) if come else phrase("other code removed: {code}", code=code)
+    text = phrase("other code added: {code}", code=code) if added else phrase("other code removed: {code}", code=code)
     more = len(parts) - 1
     if not more:
         return text
     return counted("{change} and {count} more statement", "{change} and {count} more statements", more, change=text)
 
 
-def _differ_in_names(gone: Sequence[CodePart], come: Sequence[CodePart]) -> bool:
-    """Return whether statements only have other names of variables and parameters, each everywhere the same."""
-    old, new = ("\n".join(part.text for part in parts) for parts in (gone, come))
+def _differ_in_names(removed: Sequence[CodePart], added: Sequence[CodePart]) -> bool:
+    """Return whether statements differ only in consistently renamed variables and parameters."""
+    old, new = ("\n".join(part.text for part in parts) for parts in (removed, added))
     if _VARIABLE.sub("", old) != _VARIABLE.sub("", new):
         return False
     pairs = set(zip(_VARIABLE.findall(old), _VARIABLE.findall(new), strict=True))
@@ -243,7 +243,7 @@ def _differ_in_names(gone: Sequence[CodePart], come: Sequence[CodePart]) -> bool
 
 
 def _are_versions(old: CodePart, new: CodePart) -> bool:
-    """Return whether two statements are probably versions of the same one, and differ as they are written."""
+    """Return whether two statements differ and are probably versions of the same one."""
     return (
         old.source != new.source
         and SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= MIN_SIMILARITY

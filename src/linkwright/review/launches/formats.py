@@ -1,4 +1,4 @@
-"""Launch files that a range of commits writes in another format."""
+"""Detect launch files that were converted to another format."""
 
 from __future__ import annotations
 
@@ -13,26 +13,31 @@ _LAUNCH_ROOT = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<la
 _SUFFIX = re.compile(r"[._]launch(\.(py|xml|ya?ml))?$")
 
 
-def with_other_formats(files: Sequence[ChangedFile]) -> list[ChangedFile]:
-    """Return changed files in which a removed launch file and an added one in another format are a renamed file.
+def join_format_changes(files: Sequence[ChangedFile]) -> list[ChangedFile]:
+    """Return the changed files, with a launch file converted to another format as one renamed file.
 
-    Git recognizes renamed files by their texts, which have nothing in common in Python, XML and YAML.
+    Git recognizes renamed files by their text, but Python, XML and YAML have no text in common.
     """
-    added = {_key(file.new_path): file for file in files if file.new_path and not file.old_path}
+    added = {_name_without_format(file.new_path): file for file in files if file.new_path and not file.old_path}
     result: list[ChangedFile] = []
-    joined: set[str] = set()
+    matched_paths: set[str] = set()
     for file in files:
-        other = added.get(_key(file.old_path)) if file.old_path and not file.new_path else None
-        if other is not None and other.new_path and _SUFFIX.search(other.new_path) and other.new_path not in joined:
-            joined.add(other.new_path)
-            result.append(ChangedFile(file.old_path, other.new_path))
+        counterpart = added.get(_name_without_format(file.old_path)) if file.old_path and not file.new_path else None
+        if (
+            counterpart is not None
+            and counterpart.new_path
+            and _SUFFIX.search(counterpart.new_path)
+            and counterpart.new_path not in matched_paths
+        ):
+            matched_paths.add(counterpart.new_path)
+            result.append(ChangedFile(file.old_path, counterpart.new_path))
         else:
             result.append(file)
-    return [file for file in result if file.old_path or file.new_path not in joined]
+    return [file for file in result if file.old_path or file.new_path not in matched_paths]
 
 
-def _key(path: str | None) -> tuple[str, str]:
-    """Return the folder of a launch file and its name without its format; empty names for other files."""
+def _name_without_format(path: str | None) -> tuple[str, str]:
+    """Return the folder of a launch file and its name without the format; two empty strings for other files."""
     pure_path = PurePosixPath(path or "")
     if not _SUFFIX.search(pure_path.name):
         return "", ""
@@ -40,12 +45,12 @@ def _key(path: str | None) -> tuple[str, str]:
 
 
 def is_launch_file(path: str) -> bool:
-    """Return whether the path is that of a launch file of ROS 1 or ROS 2."""
+    """Return whether a path is a launch file of ROS 1 or ROS 2."""
     return path.endswith(".launch") or is_launch_file_name(path)
 
 
 def is_launch_xml(file: Path) -> bool:
-    """Return whether an XML file has the root of a launch file, as files that others include may have."""
+    """Return whether the root of an XML file is ``<launch>``. Included files may have any name."""
     try:
         return file.suffix == ".xml" and _LAUNCH_ROOT.match(file.read_bytes()) is not None
     except OSError:
@@ -53,7 +58,7 @@ def is_launch_xml(file: Path) -> bool:
 
 
 def is_launch_yaml(file: Path) -> bool:
-    """Return whether a YAML file has the key of a launch file. Other files also have such names."""
+    """Return whether a YAML file has the top-level key ``launch``. Included files may have any name."""
     try:
         return re.search(rb"(?m)^launch[ \t]*:", file.read_bytes()) is not None
     except OSError:

@@ -1,4 +1,4 @@
-"""The functions of a repository that make the actions of launch files, such as the methods of mixins."""
+"""Find functions of the repository that make the actions of launch files, such as methods of mixins."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.names import LaunchPythonFile
 
 _MAX_DEPTH = 5
-"""The number of files through which a name may be imported."""
+"""The maximum number of files through which a name may be imported."""
 _MAX_BYTES = 1 << 20
 _MAX_PASSES = 5000
-"""The number of passes of loops in a launch file that are read one by one."""
+"""The maximum number of loop passes in a launch file that are read one by one."""
 _LAUNCH = re.compile(r"launch(_\w+)?(\.|$)")
-"""The modules whose actions are known, or are the rest of a file."""
+"""The modules whose functions are known actions, or are compared as code."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Function:
     """A function or method.
 
     Attributes:
-        python: its file.
+        python: the parsed file that defines it.
         node: its definition.
         is_method: whether its first parameter is an object or a class.
     """
@@ -38,7 +38,7 @@ class Function:
 
 
 def makes_actions(path: Path) -> bool:
-    """Return whether a file in Python imports the actions of launch files, so that it can make them for others."""
+    """Return whether a Python file imports the actions of launch files, so that it can make them for other files."""
     file = _read(path)
     imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom)) if file else ()
     return any(not node.level and _LAUNCH.match(node.module or "") for node in imports)
@@ -60,24 +60,24 @@ class HelperFunctions:
         self._passes = _MAX_PASSES
 
     def take_passes(self, count: int) -> bool:
-        """Return whether a loop may be read for each of its items; loops in loops could have billions of passes."""
+        """Return whether a loop may be read for each item, and count its passes. Nested loops could have billions."""
         if count > self._passes:
             return False
         self._passes -= count
         return True
 
     def local_names(self, python: PythonFile) -> frozenset[str]:
-        """Return the functions of a file that its other code calls, and that make actions."""
+        """Return the names of the functions of a file that make actions and are called by its other code."""
         names = self._local_names.get(id(python))
         if names is None:
             called = {called_name(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call)}
-            functions = (node for node in _definitions(python).values() if isinstance(node, ast.FunctionDef))
+            functions = (node for node in _definitions_by_name(python).values() if isinstance(node, ast.FunctionDef))
             names = frozenset(node.name for node in functions if node.name in called and self._makes(node))
             self._local_names[id(python)] = names
         return names
 
     def find(self, python: PythonFile, call: ast.Call) -> Function | None:
-        """Return the function that a call calls, or None if it is none of the repository that makes actions."""
+        """Return the function that a call calls, or None if it is not in the repository or makes no actions."""
         name = called_name(call)
         key = id(python), name
         if key not in self._found:
@@ -85,24 +85,24 @@ class HelperFunctions:
         return self._found[key]
 
     def is_foreign(self, python: PythonFile, call: ast.Call) -> bool:
-        """Return whether a file imports the function that a call calls from a package that is not part of launch."""
+        """Return whether the called function is imported from a package that is not part of launch."""
         first = called_name(call).partition(".")[0]
-        modules = [module for module, _ in _imports(python, first)]
+        modules = [module for module, _ in _import_sources(python, first)]
         return bool(modules) and not any(_LAUNCH.match(module) for module in modules) and not self.find(python, call)
 
     def _find(self, python: PythonFile, name: str) -> Function | None:
         first, _, method = name.partition(".")
         if not first or "." in method:
             return None
-        definition = self._definition(python, first, 0)
+        definition = self._find_definition(python, first, 0)
         if definition is None:
             return None
         file, node = definition
         if isinstance(node, ast.FunctionDef):
             return Function(file, node) if self._makes(node) and not method else None
-        return self._method(file, node, method, 0)
+        return self._find_method(file, node, method, 0)
 
-    def _method(self, file: PythonFile, owner: ast.ClassDef, name: str, depth: int) -> Function | None:
+    def _find_method(self, file: PythonFile, owner: ast.ClassDef, name: str, depth: int) -> Function | None:
         """Return a method of a class or of its base classes, or None if it does not make actions."""
         methods = {item.name: item for item in owner.body if isinstance(item, ast.FunctionDef)}
         found = methods.get(name)
@@ -110,9 +110,9 @@ class HelperFunctions:
             is_method = "staticmethod" not in map(ast.unparse, found.decorator_list)
             return Function(file, found, is_method) if self._makes(found) else None
         for base in owner.bases if depth < _MAX_DEPTH else ():
-            definition = self._definition(file, base.id, 0) if isinstance(base, ast.Name) else None
+            definition = self._find_definition(file, base.id, 0) if isinstance(base, ast.Name) else None
             if definition is not None and isinstance(definition[1], ast.ClassDef):
-                inherited = self._method(definition[0], definition[1], name, depth + 1)
+                inherited = self._find_method(definition[0], definition[1], name, depth + 1)
                 if inherited is not None:
                     return inherited
         return None
@@ -122,25 +122,25 @@ class HelperFunctions:
         calls = (node for node in ast.walk(function) if isinstance(node, ast.Call))
         return any(called_name(call).rpartition(".")[2] in self._makes_action for call in calls)
 
-    def _definition(
+    def _find_definition(
         self, python: PythonFile, name: str, depth: int
     ) -> tuple[PythonFile, ast.FunctionDef | ast.ClassDef] | None:
         """Return the definition of a function or class that a file defines or imports."""
-        own = _definitions(python).get(name)
+        own = _definitions_by_name(python).get(name)
         if own is not None:
             return python, own
         if depth >= _MAX_DEPTH:
             return None
-        for module, imported in _imports(python, name):
+        for module, imported in _import_sources(python, name):
             for path in self._module_files(module, Path(python.source.name)):
                 file = _read(path)
-                found = None if file is None else self._definition(file, imported, depth + 1)
+                found = None if file is None else self._find_definition(file, imported, depth + 1)
                 if found is not None:
                     return found
         return None
 
     def _module_files(self, module: str, importer: Path) -> Iterator[Path]:
-        """Yield the files of the repository that a module can be."""
+        """Yield the files of the repository that can be a module."""
         level = len(module) - len(module.lstrip("."))
         parts = tuple(part for part in module.split(".") if part)
         if level:
@@ -157,11 +157,11 @@ class HelperFunctions:
                 yield path
 
 
-def _definitions(python: PythonFile) -> dict[str, ast.FunctionDef | ast.ClassDef]:
+def _definitions_by_name(python: PythonFile) -> dict[str, ast.FunctionDef | ast.ClassDef]:
     return {node.name: node for node in python.tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
 
 
-def _imports(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
+def _import_sources(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
     """Yield the modules from which a file imports a name, with its name there."""
     for node in ast.walk(python.tree):
         if isinstance(node, ast.ImportFrom):
@@ -172,7 +172,7 @@ def _imports(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
 
 @lru_cache(maxsize=8)
 def _python_files(root: Path) -> tuple[Path, ...]:
-    """Return the files in Python below a folder, which does not change during a review."""
+    """Return the Python files below a folder. The result is cached: the folder does not change during a review."""
     files = (
         path
         for path in sorted(root.rglob("*.py"))
@@ -183,7 +183,7 @@ def _python_files(root: Path) -> tuple[Path, ...]:
 
 @lru_cache(maxsize=64)
 def _read(path: Path) -> PythonFile | None:
-    """Return a file, or None if it cannot be read."""
+    """Return a parsed file, or None if it cannot be read."""
     try:
         if path.stat().st_size > _MAX_BYTES:
             return None

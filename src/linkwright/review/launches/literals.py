@@ -1,4 +1,4 @@
-"""The literals that functions and loops of a launch file get, and which of them its actions show."""
+"""Find the literals passed to functions and loops that appear in the actions of a launch file."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from linkwright.review.launches.outlines import Entry
 _MAX_DEPTH = 20
 _VIEWS = ("items", "keys", "values")
 """The methods of dictionaries whose results loops use."""
-_TEXTS = (ast.Constant, ast.JoinedStr, ast.BinOp, ast.UnaryOp)
+_LITERAL_NODES = (ast.Constant, ast.JoinedStr, ast.BinOp, ast.UnaryOp)
 
 
 class Literals:
-    """The literals that functions of the repository and loops get.
+    """The literals that loops and functions of the repository receive.
 
-    A literal that no action shows, such as a flag or an item of a dictionary that only an ``if`` statement reads,
-    remains a part of the other code. To find these, the file is read once more with a mark in place of each literal.
+    A literal that appears in no action, such as a flag or a dictionary item that only an ``if`` statement reads,
+    remains part of the other code. To find these, the file is read once more with a mark in place of each literal.
 
     Args:
-        python: the file.
-        with_keys: whether the keys of dictionaries get marks, too. The code cannot look up marked keys.
+        python: the parsed file.
+        with_keys: whether to mark the keys of dictionaries, too. The code cannot look up marked keys.
     """
 
     def __init__(self, python: PythonFile, *, with_keys: bool) -> None:
@@ -31,48 +31,48 @@ class Literals:
         self._with_keys = with_keys
         self._copies: dict[int, tuple[ast.expr, ast.expr]] = {}
 
-    def marked(self, node: ast.expr) -> ast.expr:
+    def mark_literals(self, node: ast.expr) -> ast.expr:
         """Return an expression with marks in place of its literals."""
-        return self._marked(node, 0)
+        return self._mark_literals(node, 0)
 
-    def shown(self, entries: Iterable[Entry]) -> set[int]:
-        """Return the identities of the literals whose marks actions have."""
+    def find_shown(self, entries: Iterable[Entry]) -> set[int]:
+        """Return the identities (`id`) of the literals whose marks appear in actions."""
         texts = [text for entry in entries for text in (entry.name, *entry.settings, *entry.settings.values())]
         found = "\n".join(texts)
-        return {key for key in self._copies if _mark(key) in found}
+        return {key for key in self._copies if _mark_text(key) in found}
 
-    def _marked(self, node: ast.expr, depth: int) -> ast.expr:
+    def _mark_literals(self, node: ast.expr, depth: int) -> ast.expr:
         known = self._copies.get(id(node))
         if known is None:
             known = self._copies[id(node)] = node, self._copy(node, depth + 1)
         return known[1]
 
     def _copy(self, node: ast.expr, depth: int) -> ast.expr:
-        container = _container(self._python, node)
+        container = _find_container(self._python, node)
         if depth > _MAX_DEPTH or (container is None and not _is_literal(self._python, node)):
             return node
         if container is None:
-            return ast.copy_location(ast.Constant(_mark(id(node))), node)
+            return ast.copy_location(ast.Constant(_mark_text(id(node))), node)
         changed = copy(container)
         if isinstance(changed, ast.Dict):
-            changed.values = [self._marked(value, depth) for value in changed.values]
+            changed.values = [self._mark_literals(value, depth) for value in changed.values]
             if self._with_keys:
-                changed.keys = [None if key is None else self._marked(key, depth) for key in changed.keys]
+                changed.keys = [None if key is None else self._mark_literals(key, depth) for key in changed.keys]
         elif isinstance(changed, (ast.List, ast.Tuple)):
-            changed.elts = [self._marked(item, depth) for item in changed.elts]
+            changed.elts = [self._mark_literals(item, depth) for item in changed.elts]
         elif isinstance(changed, ast.Call) and isinstance(changed.func, ast.Attribute):
             changed.func = copy(changed.func)
-            changed.func.value = self._marked(changed.func.value, depth)
+            changed.func.value = self._mark_literals(changed.func.value, depth)
         return changed
 
 
 class CoveredLiterals:
-    """The parts that actions show of the arguments of functions and the iterables of loops.
+    """The parts of function arguments and loop iterables that appear in actions.
 
     Args:
-        python: the file.
-        shown: the identities of the literals that actions show.
-        shown_keys: those of the keys of dictionaries.
+        python: the parsed file.
+        shown: the identities (`id`) of the literals that appear in actions.
+        shown_keys: the identities of the dictionary keys that appear in actions.
 
     Attributes:
         covered: the identities of the parts that belong to actions.
@@ -86,7 +86,7 @@ class CoveredLiterals:
         self.covered: set[int] = set()
 
     def add_call(self, call: ast.Call) -> None:
-        """Add the arguments of a function, and its call if actions show all of them."""
+        """Add the arguments of a function, and its call if all of them appear in actions."""
         arguments = [self.add(argument) for argument in call.args]
         for keyword in call.keywords:
             is_covered = self.add(keyword.value)
@@ -97,7 +97,7 @@ class CoveredLiterals:
             self.covered.add(id(call))
 
     def add(self, node: ast.expr) -> bool:
-        """Add the parts of an expression, and return whether actions show all of them."""
+        """Add the parts of an expression, and return whether all of them appear in actions."""
         known = self._known.get(id(node))
         if known is None:
             self._known[id(node)] = True  # a name that is defined by itself
@@ -107,7 +107,7 @@ class CoveredLiterals:
         return known
 
     def _add(self, node: ast.expr) -> bool:
-        container = _container(self._python, node)
+        container = _find_container(self._python, node)
         if isinstance(container, ast.Dict):
             items = [self._add_item(*item) for item in zip(container.keys, container.values, strict=True)]
             return all(items)
@@ -119,7 +119,7 @@ class CoveredLiterals:
         return not _is_literal(self._python, node) or id(node) in self._shown
 
     def _add_item(self, key: ast.expr | None, value: ast.expr) -> bool:
-        """Add an item of a dictionary. The key of a value that no action shows is part of the other code, too."""
+        """Add an item of a dictionary. If the value appears in no action, its key is part of the other code, too."""
         is_covered = self.add(value)
         if is_covered and key is not None and (id(key) in self._shown_keys or not _is_literal(self._python, key)):
             self.covered.add(id(key))
@@ -127,8 +127,8 @@ class CoveredLiterals:
         return is_covered and key is None
 
 
-def _container(python: PythonFile, node: ast.expr) -> ast.expr | None:
-    """Return the dictionary or list that an expression is, or the view of a dictionary; None for others."""
+def _find_container(python: PythonFile, node: ast.expr) -> ast.expr | None:
+    """Return the dictionary, list or dictionary view of an expression; None for other expressions."""
     node = python.resolved(node)
     if isinstance(node, ast.Call):
         is_view = isinstance(node.func, ast.Attribute) and node.func.attr in _VIEWS and not node.args
@@ -138,8 +138,8 @@ def _container(python: PythonFile, node: ast.expr) -> ast.expr | None:
 
 def _is_literal(python: PythonFile, node: ast.expr) -> bool:
     value = python.resolved(node)
-    return isinstance(value, _TEXTS) and not (isinstance(value, ast.Constant) and value.value is None)
+    return isinstance(value, _LITERAL_NODES) and not (isinstance(value, ast.Constant) and value.value is None)
 
 
-def _mark(key: int) -> str:
+def _mark_text(key: int) -> str:
     return f"\x01{key}\x01"

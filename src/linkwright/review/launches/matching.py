@@ -1,4 +1,4 @@
-"""Which actions of two versions of a launch file are the same."""
+"""Match the actions of two versions of a launch file."""
 
 from __future__ import annotations
 
@@ -17,50 +17,50 @@ _SEPARATORS = re.compile(r"[\W_]+|node")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _PACKAGE = re.compile(r"\$\(find(?:-pkg-share)? [^()]+\)/")
 _PLACE = frozenset({CONDITION, NAMESPACE_OF_INCLUDED})
-"""The settings of an include that are not arguments that it passes."""
+"""The settings of an include that are not passed arguments."""
 _MIN_PASSED = 2
 _MIN_SHARE_OF_PASSED = 0.5
 """The number and the share of passed arguments that an include keeps if another file replaces the included one."""
 _NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
-"""The old and the new action; None for the version that does not have it."""
+"""The old and the new action; None for a version that lacks the action."""
 
 
-def matched_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Match]:
+def match_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Match]:
     """Yield the pairs of actions of the same kind and name, then the actions that only one version has."""
-    old_groups, new_groups = _by_name(old), _by_name(new)
+    old_groups, new_groups = _group_by_name(old), _group_by_name(new)
     for key in dict.fromkeys([*new_groups, *old_groups]):
-        yield from _matched(old_groups.get(key, []), new_groups.get(key, []))
+        yield from _match_group(old_groups.get(key, []), new_groups.get(key, []))
 
 
-def replacements(
-    gone: Sequence[Entry], come: Sequence[Entry], new_paths: Mapping[str, str]
+def find_replacements(
+    removed: Sequence[Entry], added: Sequence[Entry], new_paths: Mapping[str, str]
 ) -> list[tuple[Entry, Entry]]:
     """Return the pairs of a removed action and an added one that replaces it.
 
     Args:
-        gone: the actions that only the old version has.
-        come: the actions that only the new version has.
+        removed: the actions that only the old version has.
+        added: the actions that only the new version has.
         new_paths: the new paths of renamed files, by old path.
     """
     names = {PurePosixPath(old).name: PurePosixPath(new).name for old, new in new_paths.items()}
-    scores = [(_replacement_score(a, b, names), i, k) for i, a in enumerate(gone) for k, b in enumerate(come)]
+    scores = [(_replacement_score(a, b, names), i, k) for i, a in enumerate(removed) for k, b in enumerate(added)]
     pairs: dict[int, int] = {}
     for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
         if score and i not in pairs and k not in pairs.values():
             pairs[i] = k
-    return [(gone[i], come[k]) for i, k in sorted(pairs.items(), key=lambda pair: pair[1])]
+    return [(removed[i], added[k]) for i, k in sorted(pairs.items(), key=lambda pair: pair[1])]
 
 
 def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> float:
-    """Return a score for the certainty that an action was renamed to another; 0 if it was not."""
+    """Return a score for how certainly one action replaces another; 0 if it does not."""
     if old.kind != new.kind:
         return 0.0
     if old.kind == "environment":
         return float(old.settings == new.settings)
     if old.kind == SERVER_PARAMETER:
         return _parameter_score(old, new)
-    similarity = _similarity(old, new)
+    similarity = _settings_similarity(old, new)
     if old.kind in ("include", "parameters"):
         old_name = PurePosixPath(old.name).name
         is_same = launch_file_key(new_names.get(old_name, old_name)) == launch_file_key(new.name)
@@ -73,7 +73,7 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
         return 1.0 + similarity if is_same else likeness * (is_like or is_beside)
     if old.kind != "node" or _load_other_classes(old, new):
         return 0.0
-    (old_package, old_program), (new_package, new_program) = _program(old), _program(new)
+    (old_package, old_program), (new_package, new_program) = _split_program_name(old), _split_program_name(new)
     name = old.settings.get("name")
     if name and name == new.settings.get("name") and old.settings.get("namespace") == new.settings.get("namespace"):
         return 3.0 + similarity
@@ -87,7 +87,7 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
 
 
 def _is_other_file_of_package(old: Entry, new: Entry) -> bool:
-    """Return whether an include passes most of the arguments of another one to another file of the same package."""
+    """Return whether two includes pass mostly equal arguments to different files of the same package."""
     packages = {match[0] if (match := _PACKAGE.match(entry.name)) else "" for entry in (old, new)}
     common = old.settings.items() & new.settings.items()
     common = {(name, value) for name, value in common if name not in _PLACE}
@@ -98,9 +98,9 @@ def _is_other_file_of_package(old: Entry, new: Entry) -> bool:
 
 
 def _parameter_score(old: Entry, new: Entry) -> float:
-    """Return a score for the certainty that a parameter of the server has a new name; 0 if it is another one.
+    """Return a score for how certainly a server parameter was renamed; 0 if it was not.
 
-    Many parameters have values such as ``true``, so that an equal value alone is not enough.
+    Many parameters have values such as ``true``, so an equal value is not enough.
     """
     if old.settings != new.settings:
         return 0.0
@@ -114,7 +114,7 @@ def _parameter_score(old: Entry, new: Entry) -> float:
 
 
 def _chooses_file(path: str, fixed: str) -> bool:
-    """Return whether arguments choose a file in a path, and the other path is one of the files in its folder."""
+    """Return whether a path chooses a file by arguments, and the fixed path is a file in its folder."""
     folder, _, name = path.rpartition("/")
     fixed_folder, _, fixed_name = fixed.rpartition("/")
     pieces = _VARIABLE.split(name)
@@ -124,23 +124,23 @@ def _chooses_file(path: str, fixed: str) -> bool:
 
 
 def name_likeness(old: str, new: str) -> float:
-    """Return how much of two names is equal, from 0 to 1, without separators and the word ``node``."""
+    """Return the similarity of two names, from 0 to 1, without separators and the word ``node``."""
     old_word, new_word = (_SEPARATORS.sub("", text.lower()) for text in (old, new))
     return SequenceMatcher(None, old_word, new_word, autojunk=False).ratio()
 
 
-def _program(entry: Entry) -> tuple[str, str]:
+def _split_program_name(entry: Entry) -> tuple[str, str]:
     package, _, program = entry.name.partition("/")
     return package, program.removesuffix(".py")
 
 
 def launch_file_key(path: str) -> str:
-    """Return the name of a launch file without the ends of such names."""
+    """Return the name of a launch file without endings such as ``.launch.py``."""
     name = PurePosixPath(path).name
     return re.sub(r"[._]launch(\.(py|xml|ya?ml))?$|\.(py|xml|ya?ml)$", "", name)
 
 
-def _by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
+def _group_by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry]]:
     groups: dict[tuple[str, str], list[Entry]] = {}
     for entry in entries:
         groups.setdefault((entry.kind, "" if entry.kind == "process" else entry.name), []).append(entry)
@@ -154,13 +154,13 @@ def loaded_class(entry: Entry) -> str | None:
 
 
 def _load_other_classes(old: Entry, new: Entry) -> bool:
-    """Return whether two nodelets are of different classes."""
+    """Return whether two nodelets load different classes."""
     classes = {loaded for entry in (old, new) if (loaded := loaded_class(entry)) is not None}
     return old.name == new.name == "nodelet/nodelet" and len(classes) > 1
 
 
-def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
-    """Match the entries of a group, and yield each pair, and each entry without a partner in a pair with None.
+def _match_group(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
+    """Yield the pairs of matched entries of a group. An entry without a partner is paired with None.
 
     Equal entries are matched first, then those with the same node name, then those that serve the same names, and then
     the most similar ones.
@@ -176,7 +176,11 @@ def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
                 new_rest.remove(entry)
                 pairs.append((match, entry))
     candidates = sorted(
-        ((_similarity(other, entry), i, k) for i, other in enumerate(old_rest) for k, entry in enumerate(new_rest)),
+        (
+            (_settings_similarity(other, entry), i, k)
+            for i, other in enumerate(old_rest)
+            for k, entry in enumerate(new_rest)
+        ),
         key=lambda item: (-item[0], item[1], item[2]),
     )
     old_left, new_left = set(range(len(old_rest))), set(range(len(new_rest)))
@@ -195,10 +199,10 @@ def _matched(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
 
 
 def _are_equal(old: Entry, new: Entry) -> bool:
-    return old.settings == new.settings and _command(old) == _command(new)
+    return old.settings == new.settings and _command_words(old) == _command_words(new)
 
 
-def _command(entry: Entry) -> list[str]:
+def _command_words(entry: Entry) -> list[str]:
     return [entry.name] if entry.kind == "process" else []
 
 
@@ -211,10 +215,10 @@ def _serve_same_names(old: Entry, new: Entry) -> bool:
     return bool(names) and served_names(old) == names
 
 
-def _similarity(old: Entry, new: Entry) -> float:
-    """Return how much of the settings, and of the commands of processes, is equal, from 0 to 1."""
+def _settings_similarity(old: Entry, new: Entry) -> float:
+    """Return the similarity of the settings, and of the commands of processes, from 0 to 1."""
     old_words, new_words = (
-        " ".join([*(f"{name}={value}" for name, value in entry.settings.items()), *_command(entry)]).split()
+        " ".join([*(f"{name}={value}" for name, value in entry.settings.items()), *_command_words(entry)]).split()
         for entry in (old, new)
     )
     return SequenceMatcher(None, old_words, new_words, autojunk=False).ratio()

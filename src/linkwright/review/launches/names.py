@@ -1,4 +1,4 @@
-"""The values of names in launch files in Python, also of names that are assigned again."""
+"""Look up the values of names in Python launch files, including reassigned names."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class _Binding:
 
     Attributes:
         line: the last line of the statement.
-        value: the value, or None if it is not written there, as for parameters of functions.
-        block: the first and last line of the lines in which it certainly applies.
+        value: the value, or None if it is not written there, such as for parameters of functions.
+        block: the first and last line of the block in which the value certainly applies.
     """
 
     line: int
@@ -31,49 +31,49 @@ class _Binding:
 
 
 class LaunchPythonFile(PythonFile):
-    """A launch file in Python. A name has the value that the last statement before it assigns in its function."""
+    """A Python launch file. A name has the value of the last assignment before it in its function."""
 
     def resolved(self, node: ast.expr) -> ast.expr:
         """Return the expression that is assigned to a name, and any other expression unchanged."""
         for _ in range(_MAX_DEPTH):
             if not isinstance(node, ast.Name):
                 break
-            value = self.assigned_expression(node.id) or self._latest(node)
+            value = self.assigned_expression(node.id) or self._last_value(node)
             if value is None:
                 break
             node = value
         return node
 
-    def _latest(self, node: ast.Name) -> ast.expr | None:
+    def _last_value(self, node: ast.Name) -> ast.expr | None:
         """Return the last value of a name before a line, or None if it is not certain."""
         for start, end, bindings in self._functions:
-            before = [each for each in bindings.get(node.id, ()) if each.line < node.lineno]
+            before = [binding for binding in bindings.get(node.id, ()) if binding.line < node.lineno]
             if start <= node.lineno <= end and node.id in bindings:
-                latest = max(before, key=lambda each: each.line) if before else None
+                latest = max(before, key=lambda binding: binding.line) if before else None
                 is_certain = latest is not None and latest.block[0] <= node.lineno <= latest.block[1]
                 return latest.value if latest is not None and is_certain else None
         return None
 
     @cached_property
     def _functions(self) -> list[tuple[int, int, dict[str, list[_Binding]]]]:
-        """The first and last line of each function with its bindings, the innermost first; the last is the file."""
+        """The first line, last line and bindings of each function, the innermost first, and finally of the file."""
         functions = [node for node in ast.walk(self.tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
-        found = [(node.lineno, node.end_lineno or node.lineno, _bindings(node)) for node in functions]
+        found = [(node.lineno, node.end_lineno or node.lineno, _bindings_by_name(node)) for node in functions]
         found.sort(key=lambda item: item[1] - item[0])
-        return [*found, (0, len(self.source.text), _bindings(self.tree))]
+        return [*found, (0, len(self.source.text), _bindings_by_name(self.tree))]
 
 
-def _bindings(scope: ast.AST) -> dict[str, list[_Binding]]:
+def _bindings_by_name(scope: ast.AST) -> dict[str, list[_Binding]]:
     bindings: dict[str, list[_Binding]] = {}
-    for node, block in _nodes(scope, _EVERYWHERE):
-        for name, value in _names(node):
+    for node, block in _walk_scope(scope, _EVERYWHERE):
+        for name, value in _bound_names(node):
             line = getattr(node, "end_lineno", None) or 0
             bindings.setdefault(name, []).append(_Binding(line, value, block))
     return bindings
 
 
-def _nodes(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AST, tuple[int, int]]]:
-    """Yield the nodes of a function or file, without those of the functions in it, with the lines of their blocks."""
+def _walk_scope(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AST, tuple[int, int]]]:
+    """Yield the nodes of a function or file with the lines of their blocks, without nested functions."""
     for child in ast.iter_child_nodes(scope):
         yield child, block
         if isinstance(child, _Branching):
@@ -83,12 +83,12 @@ def _nodes(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AST, tu
                 for statement in statements:
                     lines = statements[0].lineno, statements[-1].end_lineno or statements[-1].lineno
                     yield statement, lines
-                    yield from _nodes(statement, lines)
+                    yield from _walk_scope(statement, lines)
         elif not isinstance(child, _Function):
-            yield from _nodes(child, block)
+            yield from _walk_scope(child, block)
 
 
-def _names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
+def _bound_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
     if isinstance(node, ast.arguments):
         arguments = [*node.posonlyargs, *node.args, *node.kwonlyargs, node.vararg, node.kwarg]
         yield from ((argument.arg, None) for argument in arguments if argument is not None)

@@ -1,4 +1,4 @@
-"""Outlines of launch files, which are read but not run: their actions with their settings."""
+"""Define the outline of a launch file: its actions with their settings, read without running the file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.review.launches.conditions import condition_holds
 CONDITION = "condition"
 NAMESPACE = "namespace"
 NAMESPACE_OF_INCLUDED = "namespace of its nodes"
-"""The setting of an include that is not one of the arguments that it passes."""
+"""The setting of an include that is not a passed argument."""
 REMAPPING = "remapping "
 ENVIRONMENT = "environment variable "
 READING = "reading"
@@ -30,7 +30,7 @@ _CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 _PUSH = "\n"
 """The separator of pushed namespaces, which are joined when the defaults of arguments are known."""
 _MAX_DEPTH = 5
-"""The number of variables whose values may contain variables."""
+"""The maximum depth of variables in the values of variables."""
 _MAX_LENGTH = 10_000
 
 
@@ -41,7 +41,7 @@ class Entry:
     Attributes:
         kind: ``argument``, ``variable``, ``node``, ``process``, ``include``; ``remapping``, ``parameter``,
             ``parameters`` or ``environment`` of all nodes that follow; ``server parameter`` of ROS 1; ``reading`` of an
-            environment variable; ``handler`` of an event; ``action`` of a package that is not read.
+            environment variable; ``handler`` of an event; ``action`` of a foreign package.
         name: the name of the argument or variable, ``package/executable`` of the node, the command, the path of the
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.
@@ -59,7 +59,7 @@ class Entry:
         return self.kind in ("argument", "variable")
 
     def is_same_name(self, setting: str, old: str | None, new: str | None) -> bool:
-        """Return whether a changed setting is a remapping of a name to itself, which is the same as none."""
+        """Return whether a changed setting only adds or removes a remapping of a name to itself."""
         if self.kind == "node" and setting.startswith(REMAPPING):
             source = without_condition(setting).removeprefix(REMAPPING)
         elif self.kind == "remapping" and setting == "to":
@@ -70,7 +70,7 @@ class Entry:
 
 
 def with_condition(setting: str, condition: str) -> str:
-    """Return the name of a setting that an action has under a condition, such as one of two remappings of a name."""
+    """Return the name of a conditional setting, such as one of two remappings of a name."""
     return f"{setting} ({condition})" if condition else setting
 
 
@@ -90,7 +90,7 @@ class CodePart:
     """A statement or element of a launch file that makes no action.
 
     Attributes:
-        text: a form without names of variables, comments and layout.
+        text: a comparable form without names of variables, comments and layout.
         source: the statement as it is written.
         span: where it is.
         failing_condition: the condition under which the statement ends the launch with an error; empty for other
@@ -110,8 +110,8 @@ class LaunchOutline:
     Attributes:
         entries: the entries in the order of the text.
         code: the rest of the file.
-        definitions: the statements that give a value to a name, which is compared where it is used.
-        is_ros1: whether the file is one of ROS 1.
+        definitions: the statements that assign a name. Its value is compared where the name is used.
+        is_ros1: whether it is a launch file of ROS 1.
         root: the folder of the repository; None if it is unknown.
     """
 
@@ -121,7 +121,7 @@ class LaunchOutline:
     is_ros1: bool = False
     root: Path | None = None
 
-    def resolved(self, text: str) -> str:
+    def resolve(self, text: str) -> str:
         """Return a text with the defaults of arguments and environment variables in place of ``$(var NAME)``."""
         for _ in range(_MAX_DEPTH):
             resolved = _ENVIRONMENT.sub(lambda match: match["default"] or "", _VARIABLE.sub(self._value, text))
@@ -146,9 +146,9 @@ class LaunchOutline:
 
     @cached_property
     def values(self) -> dict[str, str]:
-        """The defaults and values of arguments, and those of variables, if there is only one, by name.
+        """The defaults and values of arguments and variables by name, if each is unique.
 
-        A name that several actions set under conditions has the value of the only one whose condition can hold.
+        If several conditional actions set a name, it has the value of the only action whose condition can hold.
         """
         values: dict[str, list[Entry]] = {}
         for entry in self.entries:
@@ -158,8 +158,8 @@ class LaunchOutline:
         several = {name: entries for name, entries in values.items() if name not in result}
         known = replace(self, entries=[entry for name in result for entry in values[name][:1]]) if several else self
         for name, entries in several.items():
-            holding = [entry for entry in entries if _holds(entry, known) is not False]
-            value = _only_value(holding) if all(_holds(entry, known) for entry in holding) else None
+            holding = [entry for entry in entries if _condition_holds(entry, known) is not False]
+            value = _only_value(holding) if all(_condition_holds(entry, known) for entry in holding) else None
             if value is not None:
                 result[name] = value
         return result
@@ -171,8 +171,8 @@ def _only_value(entries: Sequence[Entry]) -> str | None:
     return next(iter(values)) if len(values) == 1 else None
 
 
-def _holds(entry: Entry, outline: LaunchOutline) -> bool | None:
-    return condition_holds(outline.resolved(entry.settings.get(CONDITION, "")))
+def _condition_holds(entry: Entry, outline: LaunchOutline) -> bool | None:
+    return condition_holds(outline.resolve(entry.settings.get(CONDITION, "")))
 
 
 @dataclass(frozen=True)
@@ -192,16 +192,16 @@ class Scope:
         """The number of settings."""
         return len(self.conditions) + len(self.namespaces)
 
-    def under(self, condition: str) -> Scope:
-        """Return the scope inside an action with a condition, which is empty if it has none."""
+    def inside(self, condition: str) -> Scope:
+        """Return the scope inside an action with a condition. The condition may be empty."""
         return Scope((*self.conditions, condition), self.namespaces) if condition else self
 
-    def pushed(self, namespace: str) -> Scope:
+    def with_namespace(self, namespace: str) -> Scope:
         """Return the scope after a namespace is pushed."""
         return Scope(self.conditions, (*self.namespaces, namespace)) if namespace else self
 
     def settings(self, kind: str, own: Mapping[str, str]) -> dict[str, str]:
-        """Return the settings of an action with those of its scope."""
+        """Return the settings of an action with the settings of its scope."""
         settings = dict(own)
         conditions = [*self.conditions, *filter(None, [own.get(CONDITION)])]
         settings.pop(CONDITION, None)
@@ -213,20 +213,20 @@ class Scope:
         return settings
 
 
-def with_joined_namespaces(outline: LaunchOutline) -> LaunchOutline:
-    """Return an outline in which each namespace that groups push is one text."""
+def join_namespaces(outline: LaunchOutline) -> LaunchOutline:
+    """Return an outline with the namespaces pushed by groups joined into one text for each action."""
     entries = [
-        replace(entry, settings={name: _joined_namespace(name, text, outline) for name, text in entry.settings.items()})
+        replace(entry, settings={name: _join_namespace(name, text, outline) for name, text in entry.settings.items()})
         for entry in outline.entries
     ]
     return replace(outline, entries=entries)
 
 
-def _joined_namespace(setting: str, text: str, outline: LaunchOutline) -> str:
-    """Return the namespace after pushes; a name that begins with ``/`` by default replaces those before it."""
+def _join_namespace(setting: str, text: str, outline: LaunchOutline) -> str:
+    """Return the namespace after all pushes. A name whose default begins with ``/`` replaces the previous ones."""
     if setting not in (NAMESPACE, NAMESPACE_OF_INCLUDED):
         return text
     joined = ""
     for name in text.split(_PUSH):
-        joined = name if not joined or outline.resolved(name).startswith("/") else f"{joined}/{name}"
+        joined = name if not joined or outline.resolve(name).startswith("/") else f"{joined}/{name}"
     return joined

@@ -1,4 +1,4 @@
-"""Outlines of launch files in Python, which are read as syntax trees."""
+"""Read the outlines of Python launch files from their syntax trees."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     Scope,
 )
-from linkwright.review.launches.rest import definitions_of, rest_of
+from linkwright.review.launches.rest import code_besides_actions, definitions_of
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 
 _NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
@@ -36,32 +36,32 @@ _ADDITIONS = ("add_action", "add_entity")
 _LIST_METHODS = ("append", "extend", "insert")
 _OUTSIDE = Scope()
 _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
-"""The arguments of actions that contain other actions, which are entries themselves."""
+"""The arguments that contain other actions. These actions have their own entries."""
 _ALIASES = {"node_executable": "executable", "node_name": "name", "node_namespace": "namespace"}
 """The names of arguments of nodes before ROS 2 Foxy."""
 _NOT_COMPARED = frozenset({"package", "executable", "plugin", "description", "cmd"})
-"""The arguments that name an action, and those that do not change what other programs see."""
+"""The arguments that name an action or are invisible to other programs."""
 _MAX_HELPER_DEPTH = 3
 _Place = tuple[int, tuple[int, ...]]
 """The identity of a call, and the numbers of the passes of the loops around it."""
 
 
 def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchOutline:
-    """Return the outline of a launch file.
+    """Return the outline of a Python launch file.
 
     Args:
-        python: the file.
+        python: the parsed file.
         helpers: the functions of the repository that make actions.
     """
     reader = _Reader(python, helpers, ExpressionTexts(python))
     reader.visit(python.tree)
     entries = sorted(reader.entries(), key=lambda entry: (entry.span.line, entry.span.column))
     covered = reader.covered | _covered_literals(python, helpers, reader.evaluated)
-    return LaunchOutline(entries, rest_of(python, covered, reader.branches), definitions_of(python))
+    return LaunchOutline(entries, code_besides_actions(python, covered, reader.branches), definitions_of(python))
 
 
 def _covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
-    """Return the identities of the arguments of evaluated functions and the iterables of loops that actions show."""
+    """Return the identities of the function arguments and loop iterables that appear in actions."""
     if not evaluated:
         return set()
     shown = []
@@ -69,7 +69,7 @@ def _covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: S
         literals = Literals(python, with_keys=with_keys)
         reader = _Reader(python, helpers, ExpressionTexts(python), literals=literals)
         reader.visit(python.tree)
-        shown.append(literals.shown(reader.entries()))
+        shown.append(literals.find_shown(reader.entries()))
     parts = CoveredLiterals(python, *shown)
     for node in evaluated:
         if isinstance(node, ast.Call) and helpers.find(python, node) is not None:
@@ -81,19 +81,19 @@ def _covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: S
 
 @dataclass
 class _Reader:
-    """A reader of the actions of a file, or of one function of it.
+    """A reader of the actions of a file or of one of its functions.
 
     Attributes:
-        python: the file.
+        python: the parsed file.
         helpers: the functions of the repository that make actions.
         texts: the texts of expressions.
         extra: the keyword arguments that the caller of a function passes on with ``**``.
-        depth: the number of functions that call the function that is read.
+        depth: the depth of nested calls at which the function is read.
         scopes: each call that makes an action, with its scope and its texts, by the identity of its syntax tree and
             the passes of the loops around it.
         covered: the calls that entries describe, which do not belong to the rest of the file.
         branches: the ``if`` statements whose conditions actions have.
-        evaluated: the calls of functions that are read, and what loops get that are read for each item.
+        evaluated: the calls of read functions, and the iterables of loops that are read for each item.
         literals: the marks in place of the literals of the file; None to read the literals themselves.
     """
 
@@ -120,15 +120,15 @@ class _Reader:
                 self.covered.add(id(call))
             elif function == _HANDLER:
                 self.covered.add(id(call))
-                yield self._handler(call, scope)
+                yield self._read_handler(call, scope)
             elif function in ACTIONS:
                 self.covered.add(id(call))
-                yield self._action(call, function, scope)
+                yield self._read_action(call, function, scope)
             elif self._is_helper(call):
                 yield from self._helper_entries(call, scope)
             else:
                 self.covered.add(id(call))
-                yield self._foreign_action(call, scope)
+                yield self._read_foreign_action(call, scope)
 
     # --- the scopes of actions ---------------------------------------------------------------------------------------
 
@@ -148,7 +148,7 @@ class _Reader:
             return  # the object of a method, whose value is not in the scope of the call
         elif isinstance(node, (ast.List, ast.Tuple)):
             for item in node.elts:
-                scope = scope.pushed(self._pushed(item))
+                scope = scope.with_namespace(self._pushed_namespace(item))
                 self.visit(item, scope)
         elif isinstance(node, ast.For):
             self._visit_loop(node.target, node.iter, node.body, scope)
@@ -164,9 +164,9 @@ class _Reader:
                 self.visit(child, scope)
 
     def _visit_value(self, value: ast.expr, scope: Scope) -> None:
-        """Find the actions of the value of a name, which may be assigned outside of the loops that use it."""
+        """Find the actions in the value of a name. The name may be assigned outside of the loops that use it."""
         texts, loops = self.texts, self._loops
-        outside = next((each for each in self._outside if not each[0] <= value.lineno <= each[1]), None)
+        outside = next((outer for outer in self._outside if not outer[0] <= value.lineno <= outer[1]), None)
         if outside is not None:
             _, _, self.texts, self._loops = outside
         self.visit(value, scope)
@@ -175,8 +175,8 @@ class _Reader:
     def _visit_loop(
         self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
     ) -> None:
-        """Find the actions of a loop, for each item if the list is written in the file."""
-        items = self.texts.items(self._marked(iterable))
+        """Find the actions of a loop; of each pass if the list is written in the file."""
+        items = self.texts.items(self._mark_literals(iterable))
         passes = [self.texts.with_item(target, item) for item in items or ()]
         if items is None or None in passes or not self.helpers.take_passes(len(items)):
             for statement in body:
@@ -194,20 +194,20 @@ class _Reader:
         self._outside.pop()
 
     def _visit_branches(self, node: ast.If, scope: Scope) -> None:
-        """Find the actions of both branches, which have the condition of the statement."""
+        """Find the actions of both branches, with the condition of the statement."""
         source = " ".join(ast.unparse(node.test).split())
         conditions = [f"{word} `{source}`" for word in ("if", "unless")]
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
-            inner = scope.under(condition)
+            inner = scope.inside(condition)
             for statement in body:
-                inner = inner.pushed(self._pushed(_added_action(statement)))
+                inner = inner.with_namespace(self._pushed_namespace(_added_action(statement)))
                 self.visit(statement, inner)
         if any(condition in inner.conditions for _, inner, _ in self.scopes.values() for condition in conditions):
             self.branches.add(id(node))
 
     def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
         for statement in function.body:
-            scope = scope.pushed(self._pushed(_added_action(statement)))
+            scope = scope.with_namespace(self._pushed_namespace(_added_action(statement)))
             self.visit(statement, scope)
 
     def visit_function(self, function: ast.FunctionDef) -> None:
@@ -222,10 +222,10 @@ class _Reader:
         if function in ACTIONS or function == _HANDLER or self._is_helper(call):
             self._add(call, scope)
         condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
-        inner = scope.under(self.texts.condition(condition))
+        inner = scope.inside(self.texts.condition(condition))
         if function == "TimerAction":
             period = next((keyword.value for keyword in call.keywords if keyword.arg == "period"), None)
-            inner = inner.under(f"after {self.texts.text(period)} s")
+            inner = inner.inside(f"after {self.texts.text(period)} s")
         if function in _LISTS or function in _ADDITIONS:
             for action in self._foreign_actions(call):
                 self._add(action, inner)
@@ -248,7 +248,7 @@ class _Reader:
             self.scopes[place] = call, scope, self.texts
 
     def _foreign_actions(self, call: ast.Call) -> Iterator[ast.Call]:
-        """Yield the actions in a list that functions of other packages make, which are not read."""
+        """Yield the calls in a list that make actions in functions of other packages."""
         arguments = [
             *call.args[:1],
             *(item.value for item in call.keywords if item.arg in ("actions", "initial_entities")),
@@ -262,7 +262,7 @@ class _Reader:
     def _is_helper(self, call: ast.Call) -> bool:
         return self.depth < _MAX_HELPER_DEPTH and self.helpers.find(self.python, call) is not None
 
-    def _pushed(self, node: ast.AST | None) -> str:
+    def _pushed_namespace(self, node: ast.AST | None) -> str:
         """Return the namespace that an action pushes, with its condition; empty for other actions."""
         node = self.python.resolved(node) if isinstance(node, ast.expr) else node
         if not isinstance(node, ast.Call) or called_name(node).rpartition(".")[2] not in _PUSHES:
@@ -279,7 +279,7 @@ class _Reader:
         function = self.helpers.find(self.python, call)
         if function is None:
             return
-        bindings, values, extra = self._arguments(call, function)
+        bindings, values, extra = self._bind_arguments(call, function)
         texts = ExpressionTexts(function.python, bindings, values)
         reader = _Reader(function.python, self.helpers, texts, extra, self.depth + 1)
         if function.python is self.python:
@@ -291,10 +291,10 @@ class _Reader:
         for entry in reader.entries():
             yield replace(entry, span=span, settings=scope.settings(entry.kind, entry.settings))
 
-    def _marked(self, node: ast.expr) -> ast.expr:
-        return node if self.literals is None else self.literals.marked(node)
+    def _mark_literals(self, node: ast.expr) -> ast.expr:
+        return node if self.literals is None else self.literals.mark_literals(node)
 
-    def _arguments(
+    def _bind_arguments(
         self, call: ast.Call, function: Function
     ) -> tuple[dict[str, str], dict[str, BoundExpression], dict[str, BoundExpression]]:
         """Return the texts and expressions of a function's parameters, and the expressions of its ``**`` parameter."""
@@ -307,12 +307,12 @@ class _Reader:
         bindings = {name: outer_texts.text(value) for name, value in defaults.items()}
         if function.is_method:
             names = names[1:]
-        given = dict(zip(names, map(self._marked, call.args), strict=False))
+        given = dict(zip(names, map(self._mark_literals, call.args), strict=False))
         bindings |= {name: self.texts.text(value) for name, value in given.items()}
         extra: dict[str, BoundExpression] = {}
         known = {*names, *(argument.arg for argument in arguments.kwonlyargs)}
         for keyword in call.keywords:
-            value = self._marked(keyword.value)
+            value = self._mark_literals(keyword.value)
             if keyword.arg is None:
                 extra |= self.extra
             elif keyword.arg not in known:
@@ -328,13 +328,17 @@ class _Reader:
 
     # --- actions -----------------------------------------------------------------------------------------------------
 
-    def _action(self, call: ast.Call, function: str, scope: Scope) -> Entry:
+    def _read_action(self, call: ast.Call, function: str, scope: Scope) -> Entry:
         text = self.texts.text
-        keywords = {_ALIASES.get(each.arg, each.arg): each.value for each in call.keywords if each.arg is not None}
+        keywords = {
+            _ALIASES.get(keyword.arg, keyword.arg): keyword.value
+            for keyword in call.keywords
+            if keyword.arg is not None
+        }
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
         first = call.args[0] if call.args else next(iter(call.keywords), None)
         first_text = text(first.value if isinstance(first, ast.keyword) else first)
-        second_text = text(call.args[1] if len(call.args) > 1 else _second_keyword(call))
+        second_text = text(call.args[1] if len(call.args) > 1 else _second_argument(call))
         settings: dict[str, str] = {}
         if function in _ARGUMENTS:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
@@ -369,7 +373,7 @@ class _Reader:
             settings[CONDITION] = condition
         return Entry(kind, name, scope.settings(kind, settings), self.python.span(call))
 
-    def _handler(self, call: ast.Call, scope: Scope) -> Entry:
+    def _read_handler(self, call: ast.Call, scope: Scope) -> Entry:
         """Return the handler of an event: its class and the action whose event it handles."""
         value = call.args[0] if call.args else next((item.value for item in call.keywords), None)
         event = None if value is None else self.python.resolved(value)
@@ -383,16 +387,16 @@ class _Reader:
         return Entry("handler", name, scope.settings("handler", settings), self.python.span(call))
 
     def _short_name(self, node: ast.expr) -> str:
-        """Return the program of a node, the class of another action, or those in a list."""
+        """Return the program of a node or the class of another action, also for each item of a list."""
         node = self.python.resolved(node)
         if isinstance(node, (ast.List, ast.Tuple)):
             return f"[{', '.join(map(self._short_name, node.elts))}]"
         if not isinstance(node, ast.Call):
             return self.texts.text(node)
         function = called_name(node).rpartition(".")[2]
-        return self._action(node, function, _OUTSIDE).name if function in _NODES else function
+        return self._read_action(node, function, _OUTSIDE).name if function in _NODES else function
 
-    def _foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
+    def _read_foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
         keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
         settings = self._node_settings(keywords)
         if call.args:
@@ -410,7 +414,7 @@ class _Reader:
         return {"launch_arguments": self.texts.text(node)} if pairs is None else dict(pairs)
 
     def _other_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
-        return _texts({key: BoundExpression(self.texts, value) for key, value in keywords.items()})
+        return _texts_by_name({key: BoundExpression(self.texts, value) for key, value in keywords.items()})
 
     def _node_settings(
         self, keywords: Mapping[str, ast.expr], extra: Mapping[str, BoundExpression] | None = None
@@ -419,7 +423,7 @@ class _Reader:
 
         Args:
             keywords: the keyword arguments of the call.
-            extra: those that the call passes on with ``**``.
+            extra: the keyword arguments that the call passes on with ``**``.
         """
         others = {key: BoundExpression(self.texts, value) for key, value in keywords.items()} | dict(extra or {})
         parts: dict[str, str] = {}
@@ -429,19 +433,19 @@ class _Reader:
             parts["arguments"] = f"[{', '.join(word.texts.joined_text(word.node) for word in words)}]"
             del others["arguments"]
         if "remappings" in others:
-            parts |= _remappings(others.pop("remappings"))
+            parts |= _split_remappings(others.pop("remappings"))
         if "parameters" in others:
-            parts |= _parameters(others.pop("parameters"))
-        return {**_texts(others), **parts}
+            parts |= _split_parameters(others.pop("parameters"))
+        return {**_texts_by_name(others), **parts}
 
 
-def _texts(values: Mapping[str, BoundExpression]) -> dict[str, str]:
+def _texts_by_name(values: Mapping[str, BoundExpression]) -> dict[str, str]:
     ignored = {*_NOT_COMPARED, *_INNER_ACTIONS, CONDITION}
     return {key: value.texts.text(value.node) for key, value in values.items() if key not in ignored}
 
 
-def _remappings(value: BoundExpression) -> dict[str, str]:
-    """Return each remapping of a list, and the parts of the list that are not known."""
+def _split_remappings(value: BoundExpression) -> dict[str, str]:
+    """Return each remapping of a list by name, and the unknown parts of the list."""
     remappings: dict[str, str] = {}
     others: list[BoundExpression] = []
     for part in value.texts.list_parts(value.node):
@@ -454,13 +458,13 @@ def _remappings(value: BoundExpression) -> dict[str, str]:
     return _unknown_parts("remappings", value, others) | remappings
 
 
-def _parameters(value: BoundExpression) -> dict[str, str]:
-    """Return each parameter of a list, and the files and other parts of the list."""
+def _split_parameters(value: BoundExpression) -> dict[str, str]:
+    """Return each parameter of a list by name, and the files and other parts of the list."""
     parameters: dict[str, str] = {}
     others: list[BoundExpression] = []
     for part in value.texts.list_parts(value.node):
         is_mapping = isinstance(part.node, (ast.Dict, ast.Call))
-        pairs = part.texts.pairs(part.node, of_parameters=True) if is_mapping else None
+        pairs = part.texts.pairs(part.node, are_parameters=True) if is_mapping else None
         if pairs is None:
             others.append(part)
         else:
@@ -478,7 +482,7 @@ def _unknown_parts(name: str, value: BoundExpression, parts: Sequence[BoundExpre
 
 
 def _unused_values(tree: ast.AST) -> frozenset[int]:
-    """Return the identities of the values of names that nothing uses."""
+    """Return the identities of the values of unused names."""
     nodes = list(ast.walk(tree))
     used = {node.id for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
     assignments = (node for node in nodes if isinstance(node, ast.Assign))
@@ -489,7 +493,7 @@ def _unused_values(tree: ast.AST) -> frozenset[int]:
     )
 
 
-def _second_keyword(call: ast.Call) -> ast.expr | None:
+def _second_argument(call: ast.Call) -> ast.expr | None:
     """Return the value of the second argument of a call, which may be the first keyword."""
     values = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg not in (None, CONDITION))]
     return values[1] if len(values) > 1 else None

@@ -1,4 +1,4 @@
-"""The files of a version that read an environment variable, besides a launch file that does not any more."""
+"""Find files that still read an environment variable after a launch file stopped reading it."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ def reader_of(version: Version, name: str, excluded: str) -> str | None:
     """Return a file that reads an environment variable, relative to the root, or None if there is none.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         name: the name of the variable.
         excluded: the path of a file that is not searched, relative to the root.
     """
-    return next((path for path in _readers(version).get(name, ()) if path != excluded), None)
+    return next((path for path in _readers_by_variable(version).get(name, ()) if path != excluded), None)
 
 
 @lru_cache(maxsize=2)
-def _readers(version: Version) -> Mapping[str, list[str]]:
-    """Return the files that read environment variables, by the name of the variable."""
+def _readers_by_variable(version: Version) -> Mapping[str, list[str]]:
+    """Return the files that read environment variables, by the name of the variable, relative to the root."""
     readers: dict[str, list[str]] = {}
     for path in version.paths(_SUFFIXES):
         for variable in {match["name"] for match in _READING.finditer(version.text(path))}:

@@ -1,4 +1,4 @@
-"""The reading of launch files in Python, XML and YAML."""
+"""Read launch files in Python, XML and YAML."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.review.launches.environment import python_readings
 from linkwright.review.launches.helpers import HelperFunctions
 from linkwright.review.launches.markup import read_markup_outline, xml_tags, yaml_tags
 from linkwright.review.launches.names import LaunchPythonFile
-from linkwright.review.launches.outlines import LaunchOutline, with_joined_namespaces
+from linkwright.review.launches.outlines import LaunchOutline, join_namespaces
 from linkwright.review.launches.python import ACTIONS, read_python_outline
 from linkwright.xacro.cache import read_document
 
@@ -29,7 +29,7 @@ def read_outline(path: Path, root: Path) -> LaunchOutline:
         OSError: the file cannot be read.
         ValueError: the file is not text in UTF-8.
     """
-    return replace(with_joined_namespaces(_read(path, root)), root=root)
+    return replace(join_namespaces(_read(path, root)), root=root)
 
 
 def _read(path: Path, root: Path) -> LaunchOutline:

@@ -1,4 +1,4 @@
-"""Arguments and variables of launch files that have another name in the new version."""
+"""Find renamed arguments and variables of launch files."""
 
 from __future__ import annotations
 
@@ -12,56 +12,60 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline
 
 _KINDS = ("argument", "variable")
 _MIN_USES = 0.5
-"""The share of the uses of a name that must be uses of the new name."""
+"""The minimum share of the uses of a name that must be uses of the new name."""
 _MIN_SIMILARITY = 0.6
 _MIN_LIKENESS_OF_USES = 0.8
 _Use = tuple[str, str]
 """The kind of an action, and a value that contains a variable."""
 
 
-def renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]:
+def find_renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]:
     """Return the new names of renamed arguments and variables, by old name.
 
-    A name is the old one if the actions that used the old one use it, or, if no action does, if it is similar and has
+    A name is a new name if the actions that used the old name use it. If no action does, it must be similar and have
     the same settings.
     """
     renamed: dict[str, str] = {}
     for kind in _KINDS:
-        old_entries, new_entries = (_by_name(outline, kind) for outline in (old, new))
-        gone = [entry for name, entry in old_entries.items() if name not in new_entries]
-        come = [entry for name, entry in new_entries.items() if name not in old_entries]
-        scores = [(_likelihood(a, b, old, new), i, k) for i, a in enumerate(gone) for k, b in enumerate(come)]
+        old_entries, new_entries = (_entries_by_name(outline, kind) for outline in (old, new))
+        removed = [entry for name, entry in old_entries.items() if name not in new_entries]
+        added = [entry for name, entry in new_entries.items() if name not in old_entries]
+        scores = [
+            (_rename_likelihood(a, b, old, new), i, k) for i, a in enumerate(removed) for k, b in enumerate(added)
+        ]
         for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
-            if score and gone[i].name not in renamed and come[k].name not in renamed.values():
-                renamed[gone[i].name] = come[k].name
+            if score and removed[i].name not in renamed and added[k].name not in renamed.values():
+                renamed[removed[i].name] = added[k].name
     return renamed
 
 
-def with_new_names(outline: LaunchOutline, renamed: Mapping[str, str]) -> LaunchOutline:
+def rename_in_outline(outline: LaunchOutline, renamed: Mapping[str, str]) -> LaunchOutline:
     """Return an outline with the new names of arguments and variables."""
     if not renamed:
         return outline
-    return replace(outline, entries=[renamed_entry(entry, renamed) for entry in outline.entries])
+    return replace(outline, entries=[rename_in_entry(entry, renamed) for entry in outline.entries])
 
 
-def renamed_entry(entry: Entry, renamed: Mapping[str, str]) -> Entry:
-    """Return an action with other names of arguments and variables."""
+def rename_in_entry(entry: Entry, renamed: Mapping[str, str]) -> Entry:
+    """Return an action with the new names of arguments and variables."""
     return replace(
         entry,
-        name=renamed.get(entry.name, entry.name) if entry.has_value else translated(entry.name, renamed),
-        settings={translated(name, renamed): translated(value, renamed) for name, value in entry.settings.items()},
+        name=renamed.get(entry.name, entry.name) if entry.has_value else rename_in_text(entry.name, renamed),
+        settings={
+            rename_in_text(name, renamed): rename_in_text(value, renamed) for name, value in entry.settings.items()
+        },
     )
 
 
-def _by_name(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
+def _entries_by_name(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
     return {entry.name: entry for entry in reversed(outline.entries) if entry.kind == kind}
 
 
-def _likelihood(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> float:
-    """Return how likely it is that an argument is another one under a new name; 0 if it is not."""
+def _rename_likelihood(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> float:
+    """Return a score for how likely one argument is another one under a new name; 0 if it is not."""
     names = {old_entry.name: new_entry.name}
-    old_uses = Counter((kind, translated(value, names)) for kind, value in _uses(old, old_entry.name))
-    new_uses = Counter(_uses(new, new_entry.name))
+    old_uses = Counter((kind, rename_in_text(value, names)) for kind, value in _find_uses(old, old_entry.name))
+    new_uses = Counter(_find_uses(new, new_entry.name))
     similarity = SequenceMatcher(None, old_entry.name, new_entry.name, autojunk=False).ratio()
     is_same = old_entry.settings == new_entry.settings
     if not old_uses:
@@ -74,11 +78,11 @@ def _likelihood(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: Lau
 
 
 def _are_alike(old: _Use, new: _Use) -> bool:
-    """Return whether two values with a variable are mostly equal, such as command lines with another option."""
+    """Return whether two values with a variable are mostly equal, such as command lines that differ in an option."""
     return old[0] == new[0] and SequenceMatcher(None, old[1], new[1], autojunk=False).ratio() >= _MIN_LIKENESS_OF_USES
 
 
-def _uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
+def _find_uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
     pattern = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in outline.entries:
         for text in (entry.name, *entry.settings.values()):
@@ -86,6 +90,6 @@ def _uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
                 yield entry.kind, text
 
 
-def translated(text: str, renamed: Mapping[str, str]) -> str:
-    """Return a text with other names of arguments and variables."""
+def rename_in_text(text: str, renamed: Mapping[str, str]) -> str:
+    """Return a text with the new names of arguments and variables."""
     return re.sub(r"(\$\((?:var|arg) )([^() ]+)", lambda match: f"{match[1]}{renamed.get(match[2], match[2])}", text)

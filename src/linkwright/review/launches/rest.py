@@ -1,4 +1,4 @@
-"""The code of a launch file in Python besides its actions, in a form that can be compared."""
+"""Normalize the code of a Python launch file besides its actions, so that it can be compared."""
 
 from __future__ import annotations
 
@@ -8,58 +8,60 @@ from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import CodePart
-from linkwright.review.launches.text import shortened_text
+from linkwright.review.launches.text import shorten_text
 
 _TRANSPARENT = frozenset(
     {"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes", "TimerAction"}
 )
-"""The calls that only put actions together."""
+"""The calls that only combine actions."""
 _ADDITIONS = ("append", "extend")
-"""The methods that put actions into lists."""
+"""The methods that add actions to lists."""
 _CONTENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
 _EXITS = ("sys.exit", "exit", "quit", "os._exit")
 """The calls that end the process."""
 _BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
-"""The fields of statements with other statements."""
+"""The fields of statements that contain nested statements."""
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
 
 
 def definitions_of(python: PythonFile) -> list[CodePart]:
-    """Return the statements that give a value to a name that has no other value."""
-    rest = _Rest(python, ())
+    """Return the statements that assign a name for the only time."""
+    rest = _CodeNormalizer(python, ())
     return [
-        CodePart("", _source(node), python.span(node))
-        for node in _statements(python.tree)
+        CodePart("", _unparse(node), python.span(node))
+        for node in _all_statements(python.tree)
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and rest.is_definition(node)
     ]
 
 
-def rest_of(python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> list[CodePart]:
+def code_besides_actions(
+    python: PythonFile, covered: Collection[int], branches: Collection[int] = ()
+) -> list[CodePart]:
     """Return the statements besides the actions, without names of variables, imports, comments and layout.
 
     Args:
-        python: the file.
+        python: the parsed file.
         covered: the identities of the calls that make actions.
         branches: the identities of the ``if`` statements whose conditions actions have.
     """
-    rest = _Rest(python, covered, branches)
+    rest = _CodeNormalizer(python, covered, branches)
     conditions = _failing_conditions(python.tree)
     parts = (
-        CodePart(rest.statement_text(node), _source(_header(node)), python.span(node), conditions.get(id(node), ""))
-        for node in sorted(_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
+        CodePart(rest.statement_text(node), _unparse(_header_of(node)), python.span(node), conditions.get(id(node), ""))
+        for node in sorted(_all_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
     return [part for part in parts if part.text]
 
 
-def _source(node: ast.AST) -> str:
+def _unparse(node: ast.AST) -> str:
     return " ".join(ast.unparse(node).split())
 
 
 def _failing_conditions(tree: ast.AST) -> dict[int, str]:
-    """Return the conditions of the ``if`` statements whose bodies end the launch, by the identity of the statement."""
+    """Return the conditions of the ``if`` statements that end the launch, by the identity of the statement."""
     return {
-        id(statement): _source(branch.test)
+        id(statement): _unparse(branch.test)
         for branch in ast.walk(tree)
         if isinstance(branch, ast.If)
         for statement in branch.body
@@ -75,12 +77,12 @@ def _ends_launch(statement: ast.stmt) -> bool:
     return isinstance(value, ast.Call) and called_name(value) in _EXITS
 
 
-def _statements(tree: ast.AST) -> list[ast.stmt]:
+def _all_statements(tree: ast.AST) -> list[ast.stmt]:
     return [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
 
 
-def _header(node: ast.stmt) -> ast.stmt:
-    """Return a statement with ``...`` in place of the statements in it."""
+def _header_of(node: ast.stmt) -> ast.stmt:
+    """Return a copy of a statement with ``...`` in place of its body."""
     if not any(getattr(node, name, None) for name in _BODIES):
         return node
     header = copy(node)
@@ -90,7 +92,7 @@ def _header(node: ast.stmt) -> ast.stmt:
     return header
 
 
-class _Rest:
+class _CodeNormalizer:
     def __init__(self, python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> None:
         self._python = python
         self._branches = branches
@@ -98,20 +100,20 @@ class _Rest:
         self._texts: dict[int, str] = {}
 
     def text(self, node: ast.AST) -> str:
-        """Return a part of the code; empty if it only makes actions."""
+        """Return a part of the code in comparable form; empty if it only makes actions."""
         known = self._texts.get(id(node))
         if known is None:
             self._texts[id(node)] = ""  # a name that is defined by itself
-            known = self._texts[id(node)] = shortened_text(self._text(node))
+            known = self._texts[id(node)] = shorten_text(self._normalize(node))
         return known
 
     def statement_text(self, node: ast.stmt) -> str:
-        """Return a statement without the statements in it; empty if it only makes actions."""
+        """Return a statement without its body in comparable form; empty if it only makes actions."""
         if not any(hasattr(node, name) for name in _BODIES):
             return self.text(node)
-        return "" if id(node) in self._branches else self._other(node)
+        return "" if id(node) in self._branches else self._fields_text(node)
 
-    def _text(self, node: ast.AST) -> str:
+    def _normalize(self, node: ast.AST) -> str:
         if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or id(node) in self._covered:
             return ""
         if isinstance(node, ast.Expr):
@@ -122,13 +124,13 @@ class _Rest:
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and self.is_definition(node):
             return ""
         if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _TRANSPARENT:
-            return self._group(node)
+            return self._group_text(node)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _ADDITIONS:
-            return self._other(node) if self._items(node.args) else ""
+            return self._fields_text(node) if self._items_text(node.args) else ""
         if isinstance(node, ast.AugAssign) and not self.text(node.value):
             return ""
         if isinstance(node, (ast.List, ast.Tuple)):
-            return self._items(node.elts)
+            return self._items_text(node.elts)
         if isinstance(node, ast.Starred):
             return self.text(node.value)
         if isinstance(node, ast.BinOp) and not self.text(node.left) and not self.text(node.right):
@@ -136,31 +138,31 @@ class _Rest:
         if isinstance(node, ast.Return):
             value = "" if node.value is None else self.text(node.value)
             return f"return {value}" if value else ""
-        return self._other(node)
+        return self._fields_text(node)
 
     def is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
-        """Return whether a statement gives a value to a name that has no other value, which its uses show."""
+        """Return whether a statement assigns a name that is assigned only once. The uses of the name show the value."""
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         return all(
             isinstance(target, ast.Name) and self._python.assigned_expression(target.id) is node.value
             for target in targets
         )
 
-    def _group(self, node: ast.Call) -> str:
-        """Return what a group or launch description contains besides actions."""
+    def _group_text(self, node: ast.Call) -> str:
+        """Return the contents of a group or launch description besides actions."""
         arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in _CONTENTS)]
         settings = [
             f"{keyword.arg}={self.text(keyword.value)}"
             for keyword in node.keywords
             if keyword.arg not in (*_CONTENTS, "condition", "initial_entities", "period")
         ]
-        return self._items(arguments) + "".join(settings)
+        return self._items_text(arguments) + "".join(settings)
 
-    def _items(self, nodes: list[ast.expr]) -> str:
+    def _items_text(self, nodes: list[ast.expr]) -> str:
         texts = dict.fromkeys(text for text in map(self.text, nodes) if text)
         return f"[{', '.join(texts)}]" if texts else ""
 
-    def _other(self, node: ast.AST) -> str:
+    def _fields_text(self, node: ast.AST) -> str:
         words = []
         for name, value in ast.iter_fields(node):
             if name in _UNCOMPARED_FIELDS or name in _BODIES:

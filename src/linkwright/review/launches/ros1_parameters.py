@@ -1,4 +1,4 @@
-"""The parameters that ``<rosparam>`` of ROS 1 sets: those of a file, and those that are written in it as YAML."""
+"""Read the parameters that ``<rosparam>`` of ROS 1 sets, from a file or from YAML inside the element."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from collections.abc import Mapping
 import yaml
 
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.yaml_values import YamlValue, composed, yaml_values
+from linkwright.review.files.yaml_values import YamlValue, compose_yaml, yaml_values
 
 _DEFAULT_COMMAND = "load"
 _NULL = "null"
 _NULL_TEXTS = ("", "~", _NULL)
 WRITTEN_TEXT = "YAML text"
-"""The name of parameters whose text is not YAML before substitution."""
+"""The name for parameters whose text is not YAML before substitution."""
 
 
 def deletes_parameters(attributes: Mapping[str, str]) -> bool:
@@ -28,7 +28,7 @@ def deleted_name(attributes: Mapping[str, str]) -> str:
 
 
 def written_parameters(attributes: Mapping[str, str], text: str) -> dict[str, str]:
-    """Return the parameters that are written in the element, by name, or the whole text if it is not YAML.
+    """Return the parameters written inside the element, by name, or the whole text if it is not YAML.
 
     Args:
         attributes: the attributes of the element, such as the namespace and the name of a single parameter.
@@ -38,26 +38,26 @@ def written_parameters(attributes: Mapping[str, str], text: str) -> dict[str, st
         return {}
     path = ".".join(filter(None, [attributes.get("ns", "").strip("/"), attributes.get("param", "")]))
     try:
-        root = composed(textwrap.dedent(text))
+        root = compose_yaml(textwrap.dedent(text))
         values = {} if root is None else yaml_values(root, {})
     except UnreadableFileError:
         values = {}
     if not values or (not path and not isinstance(root, yaml.MappingNode)):
         return {path or WRITTEN_TEXT: " ".join(text.split())}
-    return {_joined(path, name): _text(value) for name, value in values.items()}
+    return {_join_path(path, name): _value_text(value) for name, value in values.items()}
 
 
-def _text(value: YamlValue) -> str:
-    """Return the text of a value; an empty one is null, which is not an empty text."""
+def _value_text(value: YamlValue) -> str:
+    """Return the text of a value. An empty value is null and differs from an empty text."""
     return _NULL if value.type is None and not value.is_list and value.text in _NULL_TEXTS else value.text
 
 
-def _joined(path: str, name: str) -> str:
+def _join_path(path: str, name: str) -> str:
     return f"{path}{name}" if not path or not name or name.startswith("[") else f"{path}.{name}"
 
 
 def file_settings(attributes: Mapping[str, str]) -> dict[str, str]:
-    """Return how the parameters of a file are loaded, without what is the default."""
+    """Return the settings by which the parameters of a file are loaded, without defaults."""
     names = {"ns": "namespace", "param": "as parameter", "command": "command", "subst_value": "subst_value"}
     settings = {names[key]: value for key, value in attributes.items() if key in names and value}
     if settings.get("command") == _DEFAULT_COMMAND:

@@ -1,4 +1,4 @@
-"""Options that launch files pass to scripts which do not accept them, and required ones that they do not pass."""
+"""Find options that scripts refuse although launch files pass them, and missing required options."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.list_changes import list_items
 from linkwright.review.sources.python2 import as_python3
-from linkwright.review.sources.reading import readable_source
+from linkwright.review.sources.reading import try_read_source
 from linkwright.review.versions import Version, Versions
 
 _LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
@@ -47,12 +47,12 @@ class _Options:
 
 @dataclass(frozen=True)
 class _Fault:
-    """An option with which a script does not start.
+    """An option, refused or missing, that prevents a script from starting.
 
     Attributes:
         program: the name of the script.
-        option: the option.
-        is_missing: whether the script requires it, and the launch file does not pass it.
+        option: the name of the option.
+        is_missing: True if the launch file lacks a required option, False if the script refuses the option.
     """
 
     program: str
@@ -72,13 +72,13 @@ class _Fault:
         return phrase("'{program}' does not accept '{option}'", option=self.option, program=self.program)
 
 
-def refused_options(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+def find_refused_options(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the launch files with options that scripts of the new version do not accept, each with a change."""
     old_paths = {file.new_path: file.old_path for file in changed_files if file.new_path}
     for path in _launch_files(versions, changed_files):
-        new = _faults(versions.new, path)
+        new = _find_faults(versions.new, path)
         old_path = old_paths.get(path, path)
-        old = _faults(versions.old, old_path) if new and old_path else {}
+        old = _find_faults(versions.old, old_path) if new and old_path else {}
         for fault, entry in new.items():
             if fault not in old:
                 location = Location(path, entry.span.line, entry.span.column)
@@ -100,8 +100,8 @@ def _launch_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> I
                 yield path
 
 
-def _faults(version: Version, path: str) -> dict[_Fault, Entry]:
-    """Return the options of a launch file with which scripts do not start, each with the node."""
+def _find_faults(version: Version, path: str) -> dict[_Fault, Entry]:
+    """Return the options of a launch file that prevent scripts from starting, each with the node."""
     try:
         outline = read_outline(version.file(path), version.root)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
@@ -121,15 +121,15 @@ def _faults(version: Version, path: str) -> dict[_Fault, Entry]:
 
 
 def _accepts(options: Collection[str], name: str) -> bool:
-    """Return whether a script accepts an option; argparse accepts the beginning of one, too."""
+    """Return whether a script accepts an option. argparse also accepts the beginning of an option."""
     return name == _HELP or any(option.startswith(name) for option in options)
 
 
 def _passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bool]:
-    """Return the options that an action passes to its program, and whether these are certainly all."""
+    """Return the options that an action passes to its program, and whether the list is complete."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
-    words = [part for word in words for part in outline.resolved(word).split()]
+    words = [part for word in words for part in outline.resolve(word).split()]
     are_known = not any("$(" in word or "(" in word for word in words) and not text.startswith("[[")
     if _END in words:
         words = words[: words.index(_END)]
@@ -138,12 +138,12 @@ def _passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bo
 
 
 def _read_options(script: Path) -> _Options | None:
-    """Return the options of a script, or None if it has no parser of options, or accepts others."""
-    source = readable_source(script)
+    """Return the options of a script, or None if it has no option parser or accepts unknown options."""
+    source = try_read_source(script)
     if source is None or _PARSER not in source.text or any(name in source.text for name in _OPEN_PARSERS):
         return None
     try:
-        python = _parsed(source)
+        python = _parse(source)
     except (ValueError, SyntaxError, RecursionError):
         return None
     names: set[str] = set()
@@ -174,7 +174,7 @@ def _is_passed_on(python: PythonFile, call: ast.Call) -> bool:
     return any(isinstance(value, ast.Call) and called_name(value).endswith(_PARSER) for value in values)
 
 
-def _parsed(source: SourceText) -> PythonFile:
+def _parse(source: SourceText) -> PythonFile:
     try:
         return PythonFile(source)
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""The changed settings of the actions of launch files, each change once."""
+"""Report the changed settings of launch actions, each change once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import changed_settings
 from linkwright.review.launches.default_names import default_name
-from linkwright.review.launches.effects import setting_reason, value_reason
+from linkwright.review.launches.effects import argument_removal_reason, setting_reason
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -23,16 +23,16 @@ from linkwright.review.launches.outlines import (
     Entry,
     LaunchOutline,
 )
-from linkwright.review.launches.renames import translated
-from linkwright.review.launches.titles import distinct_title, joined_texts, joined_titles, title
-from linkwright.review.list_changes import change_text, shortened
+from linkwright.review.launches.renames import rename_in_text
+from linkwright.review.launches.titles import distinct_title, join_texts, join_titles, title
+from linkwright.review.list_changes import change_text, shorten
 from linkwright.review.merging import name_edit
 
 _MIN_GROUP = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
 _MAX_VALUE = 60
 _PASSED = "passed"
-"""The group of the arguments that an action passes to the file that it includes."""
+"""The group of arguments that an action passes to an included file."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class _Setting:
     """A changed setting.
 
     Attributes:
-        name: the name.
+        name: the name of the setting.
         old: the old value; None if there was none.
         new: the new value; None if there is none.
         reason: why the change is breaking; None if it is not.
@@ -53,7 +53,7 @@ class _Setting:
 
     @property
     def edit(self) -> Hashable | None:
-        """The part of the target of a remapping that is replaced and its replacement; None for other settings."""
+        """The replaced part of the target of a remapping and its replacement; None for other settings."""
         if not self.name.startswith(REMAPPING) or not self.old or not self.new:
             return None
         has_common = self.old[0] == self.new[0] or self.old[-1] == self.new[-1]
@@ -71,14 +71,14 @@ class _Setting:
 
 
 class SettingChanges:
-    """The changed settings of actions. The same change of several actions is one.
+    """The changed settings of actions. The same change of several actions is reported once.
 
     Args:
-        pair: the file.
+        pair: both versions of the file.
         old: the old outline, with the new names of arguments.
-        new: the new outline.
+        new: the outline of the new file.
         renamed: the new names of arguments, by old name.
-        included: the new actions with those of the included files.
+        included: the new actions and the actions of the included files.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class SettingChanges:
         self._groups: dict[tuple[str, str], list[tuple[Entry, Location | None, Phrase, Phrase | None]]] = {}
 
     def add_renamed(self) -> None:
-        """Add the arguments and variables with new names."""
+        """Report the arguments and variables with new names."""
         for old_name, new_name in self._renamed.items():
             entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
             is_argument = entry.kind == "argument" and "value" not in entry.settings
@@ -107,55 +107,55 @@ class SettingChanges:
             self._pair.add(
                 text,
                 self._pair.location(entry.span),
-                value_reason(old_name, is_ros1=self._old.is_ros1) if is_argument else None,
+                argument_removal_reason(old_name, is_ros1=self._old.is_ros1) if is_argument else None,
             )
 
     def compare(self, old: Entry, new: Entry) -> None:
-        """Add the changed settings of an action."""
+        """Collect the changed settings of an action."""
         if old.kind == "process" and old.name != new.name:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
-            self._add(program, change_text("command", translated(old.name, self._old_names), new.name), None)
+            self._add(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
         settings = []
-        for each in changed_settings(old, new, self._old, self._new):
-            if self._is_same_name(new, each.name, each.old, each.new):
+        for pair in changed_settings(old, new, self._old, self._new):
+            if self._is_same_name(new, pair.name, pair.old, pair.new):
                 continue
-            defaults = each.old_default, each.new_default
-            is_other = each.has_defaults and defaults[0] != defaults[1]
-            reason = self._reason(new, each.name, *defaults) if is_other else None
+            defaults = pair.old_default, pair.new_default
+            is_other = pair.has_defaults and defaults[0] != defaults[1]
+            reason = self._reason(new, pair.name, *defaults) if is_other else None
             if new.kind == READING and reason is None:
                 continue
-            old_text = None if each.old is None else translated(each.old, self._old_names)
-            setting = _Setting(each.name, old_text, each.new, reason)
+            old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
+            setting = _Setting(pair.name, old_text, pair.new, reason)
             if setting.edit is None:
                 settings.append(setting)
             else:
                 place = new, self._pair.location(new.span), setting
                 self._remappings.setdefault((setting.edit, reason is None), []).append(place)
-        for text, reason, name in _joined_settings(settings, is_include=new.kind == "include"):
+        for text, reason, name in _group_settings(settings, is_include=new.kind == "include"):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._add(new, text, reason, is_apart=name != CONDITION)
 
     def _reason(self, entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
-        """Return why a changed setting is breaking: by the rules for names, or by the nodes that it stops."""
+        """Return the reason why a changed setting is breaking: shared names, or nodes that it stops."""
         reason = setting_reason(entry, setting, old, new, self._old, self._new)
         if entry.kind == "include":
             if setting == CONDITION:
-                return reason if self._included.started(entry) else None
+                return reason if self._included.started_programs(entry) else None
             return reason or self._reason_of_passed(entry, setting, old)
         if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
-            lost = self._included.all_started({entry.name: old}) - self._included.all_started()
+            lost = self._included.all_started_programs({entry.name: old}) - self._included.all_started_programs()
             return _stopped_reason(lost) if lost else None
         return reason
 
     def _reason_of_passed(self, include: Entry, setting: str, old: str | None) -> Phrase | None:
-        """Return why another value for an argument of an included file is breaking, or None if it is not."""
+        """Return the reason why another value for an argument of an included file is breaking, or None if it is not."""
         others = {name: value for name, value in include.settings.items() if name != setting}
         before = replace(include, settings=others if old is None else {**others, setting: old})
-        lost = self._included.started(before) - self._included.started(include)
+        lost = self._included.started_programs(before) - self._included.started_programs(include)
         return _stopped_reason(lost) if lost else None
 
     def _is_same_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:
-        """Return whether a setting gives the name that is used without it: of a node, or of a topic."""
+        """Return whether a setting sets the default name of a node or topic."""
         if entry.kind == "node" and setting == "name" and None in (old, new):
             return default_name(self._pair.versions.new.root, entry.name) == (old or new)
         return entry.is_same_name(setting, old, new)
@@ -165,7 +165,7 @@ class SettingChanges:
         self._groups.setdefault((str(text), str(reason) if is_apart else ""), []).append(place)
 
     def _add_remappings(self) -> None:
-        """Add the changed remappings; those whose targets are edited in the same way as one change."""
+        """Collect the changed remappings. Equal edits of several targets are one change."""
         for places in self._remappings.values():
             edits = {(setting.name, setting.old, setting.new) for _, _, setting in places}
             if len(places) < _MIN_GROUP or len(edits) == 1:
@@ -175,30 +175,30 @@ class SettingChanges:
             entries = [entry for entry, _, _ in places]
             names = list(dict.fromkeys(f"{setting.old} -> {setting.new}" for _, _, setting in places))
             text = phrase("remappings {items}", items=joined_first(names, MAX_NAMES))
-            text = phrase("{entry}: {change}", entry=joined_titles(entries), change=text)
+            text = phrase("{entry}: {change}", entry=join_titles(entries), change=text)
             self._pair.add(text, places[0][1], _group_reason([setting for _, _, setting in places]))
 
     def add_groups(self) -> None:
-        """Add the changes to the file."""
+        """Report the collected changes for the file."""
         self._add_remappings()
         for places in self._groups.values():
             _, location, change, _ = places[0]
             reason = next((reason for _, _, _, reason in places if reason is not None), None)
             entries = [entry for entry, _, _, _ in places]
             titles = [self._title(entry, entries, str(change)) for entry in entries]
-            text = phrase("{entry}: {change}", entry=joined_texts(titles), change=change)
+            text = phrase("{entry}: {change}", entry=join_texts(titles), change=change)
             self._pair.add(text, location, reason)
             if len(set(titles)) == 1:  # a report counts equal changes
                 for _, other_location, _, _ in places[1:]:
                     self._pair.add(text, other_location, reason)
 
     def _title(self, entry: Entry, changed: Sequence[Entry], change: str) -> Phrase:
-        """Return the title of an action, with the name of the node if others with the title have not changed.
+        """Return the title of an action, with the name of the node if an unchanged action has the same title.
 
-        A change of the name itself shows it.
+        A change of the name itself already shows it.
         """
         alike = [other for other in self._new.entries if other.kind == "node" and title(other) == title(entry)]
-        if entry.kind != "node" or all(any(other is each for each in changed) for other in alike):
+        if entry.kind != "node" or all(any(other is changed_entry for changed_entry in changed) for other in alike):
             return distinct_title(entry, self._new.entries)
         name = "/".join(filter(None, (entry.settings.get(NAMESPACE), entry.settings.get("name"))))
         is_shown = not name or f" {name}" in change
@@ -212,12 +212,12 @@ def _stopped_reason(programs: Collection[Program]) -> Phrase:
     return phrase("by default, {entries} do not start any more", entries=joined_first(names, MAX_NAMES))
 
 
-def _joined_settings(
+def _group_settings(
     settings: Sequence[_Setting], *, is_include: bool = False
 ) -> Iterator[tuple[Phrase, Phrase | None, str]]:
     """Yield the changes of the settings of an action with their reasons and names.
 
-    Several added or removed parameters or remappings are one change, and so are the arguments of an included file.
+    Several added or removed parameters, remappings or arguments of an included file are one change.
     """
     groups: dict[object, list[_Setting]] = {}
     for setting in settings:
@@ -236,7 +236,7 @@ def _joined_settings(
 
 def _group_text(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
-    items = joined_first([_item(setting) for setting in group], MAX_NAMES)
+    items = joined_first([_setting_text(setting) for setting in group], MAX_NAMES)
     if is_include:
         added, removed = (
             phrase("arguments added: {items}", items=items),
@@ -256,8 +256,8 @@ def _group_text(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
     )
 
 
-def _item(setting: _Setting) -> str:
-    value = shortened(setting.new or setting.old or "''", _MAX_VALUE)
+def _setting_text(setting: _Setting) -> str:
+    value = shorten(setting.new or setting.old or "''", _MAX_VALUE)
     if setting.name.startswith(REMAPPING):
         return f"{setting.name.removeprefix(REMAPPING)} -> {value}"
     return f"{setting.name.removeprefix(PARAMETER)} {value}"

@@ -1,4 +1,4 @@
-"""Which side of a name a node is on: whether it offers a topic or service, or only uses it."""
+"""Decide whether a node offers a topic or service, or only uses it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _INPUTS = re.compile(
     r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
     r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
 )
-"""The topics to which those programs subscribe. They publish others."""
+"""The topics to which these programs subscribe. They publish their other topics."""
 _NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
 _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
 _OFFERING = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
@@ -36,7 +36,7 @@ class Side(Enum):
 
 
 def side_of(program: str, name: str, root: Path | None) -> Side:
-    """Return whether a node offers a topic or service, or uses it, as its sources or the name tell.
+    """Return whether a node offers a topic or service or uses it, judging by its sources or the name.
 
     Args:
         program: the package and the executable of the node.
@@ -46,7 +46,7 @@ def side_of(program: str, name: str, root: Path | None) -> Side:
     plain = name.lstrip("~/")
     if _SUBSCRIBERS.match(program) and _INPUTS.fullmatch(plain):
         return Side.USES
-    kinds = set() if root is None else _kinds(root, program.partition("/")[0]).get(plain, set())
+    kinds = set() if root is None else _kinds_by_name(root, program.partition("/")[0]).get(plain, set())
     if kinds and kinds <= _USING:
         return Side.USES
     if kinds & _OFFERING or _NAMED_OUTPUT.fullmatch(plain):
@@ -55,7 +55,7 @@ def side_of(program: str, name: str, root: Path | None) -> Side:
 
 
 @lru_cache(maxsize=64)
-def _kinds(root: Path, package: str) -> dict[str, set[NameKind]]:
+def _kinds_by_name(root: Path, package: str) -> dict[str, set[NameKind]]:
     """Return the kinds of the names of topics, services and actions in the sources of a package."""
     kinds: dict[str, set[NameKind]] = {}
     folder = package_folders(root).get(package)

@@ -1,4 +1,4 @@
-"""Expressions of launch files in Python as text, in the notation of XML launch files as far as it has one."""
+"""Write expressions of Python launch files as text, where possible in the notation of XML launch files."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals
 _COMPARING = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
-"""A command whose program is searched explicitly. The search is left out of the text, as commands always do it."""
+"""A command with an explicit search for the program. The text omits the search, which is the default."""
 _QUOTED = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
-"""An expression that is only a text in quotes."""
+"""An expression that is only a quoted text."""
 _OTHER_TYPES = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
@@ -28,11 +28,11 @@ _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
 
 @dataclass(frozen=True)
 class BoundExpression:
-    """An expression that a name has as its value.
+    """An expression that is the value of a name.
 
     Attributes:
         texts: the texts of the expressions where it is written.
-        node: the expression.
+        node: the syntax tree of the expression.
     """
 
     texts: ExpressionTexts
@@ -43,7 +43,7 @@ class ExpressionTexts:
     """The texts of expressions of a file.
 
     Args:
-        python: the file.
+        python: the parsed file.
         bindings: the texts of the parameters of the function that is read, by name.
         values: the expressions of parameters and of variables of loops, by name.
     """
@@ -82,7 +82,7 @@ class ExpressionTexts:
         return bound or BoundExpression(self, node)
 
     def items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return the items of a list or dictionary, or None if it is not written in the file."""
+        """Return the items of a list or dictionary, or None if the file does not contain it literally."""
         value = self.value(node)
         items = value.texts.dictionary_items(value.node)
         if items is not None:
@@ -92,7 +92,7 @@ class ExpressionTexts:
         return [value.texts.value(item) for item in value.node.elts]
 
     def dictionary_items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return what a loop over a dictionary, or over its items, keys or values, gets; None for other expressions."""
+        """Return the items of a loop over a dictionary, its items, keys or values; None for other expressions."""
         view = "keys"
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and not node.args:
             method = node.func
@@ -110,9 +110,9 @@ class ExpressionTexts:
         return items
 
     def list_parts(self, node: ast.expr) -> list[BoundExpression]:
-        """Return the items of a list, also of sums of lists and of lists in lists (``*items``).
+        """Return the items of a list, including sums of lists and unpacked lists (``*items``).
 
-        A part whose items are not written in the file is an item itself.
+        A part whose items are not written in the file counts as one item.
         """
         value = self.value(node)
         node, texts = value.node, value.texts
@@ -130,14 +130,14 @@ class ExpressionTexts:
         if node is None:
             return ""
         if depth > _MAX_DEPTH:
-            return shortened_text(" ".join(ast.unparse(node).split()))
+            return shorten_text(" ".join(ast.unparse(node).split()))
         known = self._texts.get(id(node))
         if known is None:
-            known = self._texts[id(node)] = node, shortened_text(self._text(node, depth))
+            known = self._texts[id(node)] = node, shorten_text(self._text(node, depth))
         return known[1]
 
     def joined_text(self, node: ast.expr) -> str:
-        """Return an expression as text. A list of substitutions is one text."""
+        """Return an expression as text. A list of substitutions is joined."""
         return "".join(map(self.text, self._pieces(node)))
 
     def condition(self, node: ast.expr | None) -> str:
@@ -150,7 +150,7 @@ class ExpressionTexts:
         if isinstance(node, ast.Constant) and node.value is None:
             return ""
         if isinstance(node, ast.Call):
-            function, arguments = called_name(node).rpartition(".")[2], _arguments(node)
+            function, arguments = called_name(node).rpartition(".")[2], _call_arguments(node)
             if function in _ARGUMENT_CONDITIONS and arguments:
                 return f"{_ARGUMENT_CONDITIONS[function]} {self.text(arguments[0])}"
             if function in _COMPARISONS and len(arguments) > 1:
@@ -163,14 +163,14 @@ class ExpressionTexts:
         is_string = isinstance(node, ast.Constant) and isinstance(node.value, str)
         return f"'{text}'" if is_string and _OTHER_TYPES.fullmatch(text) else text
 
-    def pairs(self, node: ast.expr, *, of_parameters: bool = False) -> list[tuple[str, str]] | None:
+    def pairs(self, node: ast.expr, *, are_parameters: bool = False) -> list[tuple[str, str]] | None:
         """Return the keys and values of a dictionary, of its ``items()``, or of a list of pairs; None for others.
 
         Args:
-            node: the expression.
-            of_parameters: whether the values are parameters, whose types are shown; see `parameter_text`.
+            node: the syntax tree of the expression.
+            are_parameters: whether the values are parameters, so that the text shows their types; see `parameter_text`.
         """
-        value_text = self.parameter_text if of_parameters else self.joined_text
+        value_text = self.parameter_text if are_parameters else self.joined_text
         node = self._python.resolved(node)
         if isinstance(node, ast.Call) and called_name(node) == "list" and len(node.args) == 1:
             node = self._python.resolved(node.args[0])
@@ -178,7 +178,7 @@ class ExpressionTexts:
             node = self._python.resolved(node.func.value)
         bound = self.value(node)
         if bound.texts is not self:
-            return bound.texts.pairs(bound.node, of_parameters=of_parameters)
+            return bound.texts.pairs(bound.node, are_parameters=are_parameters)
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
             return [(keyword.arg or "", value_text(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
@@ -251,7 +251,7 @@ class ExpressionTexts:
     def _substitution(self, node: ast.Call, part: _Part) -> str | None:
         """Return a substitution in the notation of XML launch files, or None for any other call."""
         function = called_name(node).rpartition(".")[2]
-        arguments = _arguments(node)
+        arguments = _call_arguments(node)
         first = arguments[0] if arguments else None
         if function == "LaunchConfiguration":
             default = argument_of(node, "default")
@@ -274,7 +274,7 @@ class ExpressionTexts:
             if function != "join" and isinstance(self._python.resolved(first), ast.Call):
                 return None  # it fails: only a list can be joined
             pieces = arguments if function == "join" else self._pieces(first)
-            return _joined_path(["".join(map(part, self._pieces(piece))) for piece in pieces])
+            return _join_path(["".join(map(part, self._pieces(piece))) for piece in pieces])
         if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):
             return part(first)
         if function == "EnvironmentVariable":
@@ -289,7 +289,7 @@ class ExpressionTexts:
         return None
 
     def _is_string(self, node: ast.expr) -> bool:
-        """Return whether an expression certainly is a string, such as a sum with one."""
+        """Return whether an expression certainly is a string, such as a sum with a string."""
         for _ in range(_MAX_DEPTH):
             node = self._python.resolved(node)
             if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add):
@@ -309,7 +309,7 @@ class ExpressionTexts:
         return node.elts if isinstance(node, (ast.List, ast.Tuple)) else [node]
 
 
-def shortened_text(text: str) -> str:
+def shorten_text(text: str) -> str:
     """Return a text, shortened if it is long, with a hash of the whole text."""
     if len(text) <= _MAX_LENGTH:
         return text
@@ -317,12 +317,12 @@ def shortened_text(text: str) -> str:
 
 
 def _expression_text(expression: str) -> str:
-    """Return an expression of Python. A text in quotes is the text, also if it contains substitutions."""
+    """Return a Python expression as text. A quoted text loses its quotes, even if it contains substitutions."""
     quoted = _QUOTED.fullmatch(expression)
     return f"$(eval {expression})" if quoted is None else quoted["text"]
 
 
-def _joined_path(parts: Sequence[str]) -> str:
+def _join_path(parts: Sequence[str]) -> str:
     """Return the path that ``os.path.join`` makes of its parts."""
     path = ""
     for part in parts:
@@ -331,12 +331,12 @@ def _joined_path(parts: Sequence[str]) -> str:
     return path
 
 
-def _arguments(node: ast.Call) -> list[ast.expr]:
+def _call_arguments(node: ast.Call) -> list[ast.expr]:
     return [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg is not None)]
 
 
 def _call_text(node: ast.Call, part: _Part) -> str:
-    """Return any other call: the function is written as it is, its arguments with their values."""
+    """Return any other call as text: the function unchanged, its arguments with their values."""
     words = [part(argument) for argument in node.args]
     words += [
         f"{keyword.arg}={part(keyword.value)}" if keyword.arg else part(keyword.value) for keyword in node.keywords

@@ -1,4 +1,4 @@
-"""The names of the actions of launch files in sentences."""
+"""Name launch actions in sentences."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from linkwright.review.launches.outlines import (
     SERVER_PARAMETER,
     Entry,
 )
-from linkwright.review.list_changes import EMPTY, list_items, shortened
+from linkwright.review.list_changes import EMPTY, list_items, shorten
 
 _ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
 """The beginnings of the names of settings in the order in which they are shown."""
 _MAX_SETTINGS = 16
-"""The number of settings that the line about an added or removed action shows."""
+"""The maximum number of settings in the line about an added or removed action."""
 _VALUES = ("to", "value", "appended value")
-"""The settings that are the value of an action with only one."""
+"""The settings that are the only value of an action."""
 _MAX_SETTING = 120
 _MAX_NAME = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
@@ -42,7 +42,7 @@ _SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspaw
 
 def title(entry: Entry) -> Phrase:
     """Return the kind and name of an action."""
-    name = shortened(entry.name, _MAX_NAME)
+    name = shorten(entry.name, _MAX_NAME)
     if entry.kind == "argument":
         return phrase("argument '{name}'", name=name)
     if entry.kind == "variable":
@@ -79,7 +79,7 @@ def _deletion_title(name: str) -> Phrase:
 
 
 def _node_title(entry: Entry, name: str) -> Phrase:
-    """Return the name of a node, and of the controllers or the frame that it serves."""
+    """Return the title of a node with the controllers or the frame that it serves."""
     names = served_names(entry)
     if not names:
         return phrase("node '{name}'", name=name)
@@ -87,13 +87,13 @@ def _node_title(entry: Entry, name: str) -> Phrase:
 
 
 def served_names(entry: Entry) -> list[str]:
-    """Return the controllers that a spawner starts, or the frame that a static transform places; empty if unknown."""
+    """Return the controllers of a spawner, or the child frame of a static transform; empty if unknown."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
     if words == [text] and text.startswith("["):
         return []  # an expression that is not known
     if _SPAWNER.fullmatch(entry.name):
-        return list(_controllers(words))
+        return list(_spawned_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
         return []
     child = _CHILD.search(text)
@@ -104,7 +104,7 @@ def served_names(entry: Entry) -> list[str]:
     return [words[count - 1]] if count in _TRANSFORM_WORDS else []
 
 
-def _controllers(words: Sequence[str]) -> Iterator[str]:
+def _spawned_controllers(words: Sequence[str]) -> Iterator[str]:
     """Yield the words of a spawner's command line that are neither options nor their values."""
     is_value = False
     for word in words:
@@ -116,7 +116,7 @@ def _controllers(words: Sequence[str]) -> Iterator[str]:
 
 
 def distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
-    """Return the title of an action, with its condition if another one sets the same name."""
+    """Return the title of an action, with its condition if another action sets the same name."""
     condition = entry.settings.get(CONDITION)
     count = sum((other.kind, other.name) == (entry.kind, entry.name) for other in others)
     if entry.kind in ("node", "include", "process") or condition is None or count < 2:
@@ -124,57 +124,57 @@ def distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
     return phrase("{entry} ({items})", entry=title(entry), items=condition)
 
 
-def joined_titles(entries: Sequence[Entry]) -> Phrase:
-    """Return the titles of actions, or the first ones and the number of the others."""
-    return joined_texts(list(map(title, entries)))
+def join_titles(entries: Sequence[Entry]) -> Phrase:
+    """Return the titles of actions as a list, or the first titles and the number of the remaining ones."""
+    return join_texts(list(map(title, entries)))
 
 
-def joined_texts(titles: Sequence[Phrase]) -> Phrase:
-    """Return different titles, or the first ones and the number of the others."""
+def join_texts(titles: Sequence[Phrase]) -> Phrase:
+    """Return distinct titles as a list, or the first titles and the number of the remaining ones."""
     return joined_first(list(dict.fromkeys(titles)), MAX_NAMES)
 
 
-def added_entry(entry: Entry) -> Phrase:
-    """Return that an action was added, with its value if it has only one, or with its settings."""
-    items = _contents(entry)
+def added_entry_text(entry: Entry) -> Phrase:
+    """Return the text that an action was added, with its only value or its settings."""
+    items = _value_or_settings(entry)
     if items is None:
         return phrase("{entry} added", entry=title(entry))
     return phrase("{entry} added: {items}", entry=title(entry), items=items)
 
 
-def removed_entry(entry: Entry) -> Phrase:
-    """Return that an action was removed, with its value if it has only one, or with its settings."""
-    items = _contents(entry)
+def removed_entry_text(entry: Entry) -> Phrase:
+    """Return the text that an action was removed, with its only value or its settings."""
+    items = _value_or_settings(entry)
     if items is None:
         return phrase("{entry} removed", entry=title(entry))
     return phrase("{entry} removed: {items}", entry=title(entry), items=items)
 
 
-def _contents(entry: Entry) -> Phrase | None:
+def _value_or_settings(entry: Entry) -> Phrase | None:
     """Return the value of an action if it has only one, or its settings; None if it has none."""
     if entry.kind == READING:
         return None
     names = [name for name in entry.settings if name != "description"]
     if len(names) == 1 and names[0] in _VALUES:
-        return as_phrase(shortened(entry.settings[names[0]], _MAX_NAME) or EMPTY)
+        return as_phrase(shorten(entry.settings[names[0]], _MAX_NAME) or EMPTY)
     return settings_text(entry)
 
 
 def settings_text(entry: Entry, limit: int = _MAX_SETTINGS) -> Phrase | None:
     """Return the settings of an action, its condition first, or None if it has none."""
-    names = sorted((name for name in entry.settings if name != "description"), key=_order)
+    names = sorted((name for name in entry.settings if name != "description"), key=_setting_rank)
     if not names:
         return None
     return joined_first([_setting_text(name, entry.settings[name]) for name in names], limit)
 
 
-def _order(setting: str) -> int:
-    """Return the place of a setting among those of an action: what others use and what differs in each node first."""
+def _setting_rank(setting: str) -> int:
+    """Return the rank of a setting in a list: shared names and settings that differ in each node come first."""
     return next((number for number, start in enumerate(_ORDER) if setting.startswith(start)), len(_ORDER))
 
 
 def _setting_text(name: str, value: str) -> str:
     if name == CONDITION:
-        return shortened(value, _MAX_SETTING)
+        return shorten(value, _MAX_SETTING)
     separator = " -> " if name.startswith(REMAPPING) else " "
-    return shortened(f"{name}{separator}{value or EMPTY}", _MAX_SETTING)
+    return shorten(f"{name}{separator}{value or EMPTY}", _MAX_SETTING)

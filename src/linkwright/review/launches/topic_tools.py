@@ -1,4 +1,4 @@
-"""The topics that the programs of topic_tools forward, as their arguments name them."""
+"""Compare the topics that the programs of topic_tools forward, from their arguments."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _Topics = tuple[list[str], list[str]]
 def forwarding_reason(
     entry: Entry, setting: str, old: str | None, new: str | None, outlines: tuple[LaunchOutline, LaunchOutline]
 ) -> Phrase | None:
-    """Return why a changed setting of a program of topic_tools is breaking, or None if it is not.
+    """Return the reason why a changed setting of a topic_tools program is breaking, or None if it is not.
 
     Args:
         entry: the new action.
@@ -31,35 +31,35 @@ def forwarding_reason(
     """
     if not entry.name.startswith(_PACKAGE) or old is None or new is None:
         return None
-    old_text, new_text = outlines[0].resolved(old), outlines[1].resolved(new)
+    old_text, new_text = outlines[0].resolve(old), outlines[1].resolve(new)
     if setting == _INPUT:
-        return None if _is_same(old_text, [new_text]) else _input_reason(old_text)
+        return None if _may_be_among(old_text, [new_text]) else _input_reason(old_text)
     if setting != "arguments":
         return None
-    (old_inputs, old_outputs), (new_inputs, new_outputs) = (_topics(entry, text) for text in (old_text, new_text))
+    (old_inputs, old_outputs), (new_inputs, new_outputs) = (_read_topics(entry, text) for text in (old_text, new_text))
     if not old_inputs or not new_inputs:
         return None
-    kept = [*new_outputs, *(name for other in outlines[1].entries for name in _outputs(other, outlines[1]))]
+    kept = [*new_outputs, *(name for other in outlines[1].entries for name in _output_topics(other, outlines[1]))]
     for name in old_outputs:
-        if not _is_same(name, kept):
+        if not _may_be_among(name, kept):
             return name_reason(name)
-    return next((_input_reason(name) for name in old_inputs if not _is_same(name, new_inputs)), None)
+    return next((_input_reason(name) for name in old_inputs if not _may_be_among(name, new_inputs)), None)
 
 
 def _input_reason(name: str) -> Phrase:
     return phrase("the messages of '{name}' are not forwarded any more", name=name)
 
 
-def _is_same(name: str, names: list[str]) -> bool:
-    """Return whether a name is among others, or may be one whose parts are unknown."""
+def _may_be_among(name: str, names: list[str]) -> bool:
+    """Return whether a name is, or may be, among names with unknown parts."""
     return any("$(" in other or other.strip("/") == name.strip("/") for other in names)
 
 
-def _outputs(entry: Entry, outline: LaunchOutline) -> list[str]:
-    return _topics(entry, outline.resolved(entry.settings.get("arguments", "")))[1]
+def _output_topics(entry: Entry, outline: LaunchOutline) -> list[str]:
+    return _read_topics(entry, outline.resolve(entry.settings.get("arguments", "")))[1]
 
 
-def _topics(entry: Entry, arguments: str) -> _Topics:
+def _read_topics(entry: Entry, arguments: str) -> _Topics:
     """Return the topics that the arguments of a program name; none if they are unknown."""
     words = list_items(arguments) if arguments.startswith("[") else arguments.split()
     words = words[: words.index("--ros-args")] if "--ros-args" in words else words

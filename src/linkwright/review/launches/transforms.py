@@ -1,4 +1,4 @@
-"""The nodes that may publish the transform of a removed static one."""
+"""Find nodes that may publish the transform of a removed static transform publisher."""
 
 from __future__ import annotations
 
@@ -25,34 +25,34 @@ _PARENT = re.compile(r"--frame-id[ ,]+([^ ,\]]+)")
 
 
 def other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, version: Version) -> Entry | None:
-    """Return an added node that may publish the transform of a removed static one, or None if there is none.
+    """Return an added node that may publish the transform of a removed publisher, or None if there is none.
 
-    A node does so if its program publishes such transforms, or if its parameters name both frames.
+    A node may publish it if its program publishes static transforms, or if its parameters name both frames.
 
     Args:
-        transform: the removed action.
-        old: the old file.
-        new: the new file.
+        transform: the removed static transform publisher.
+        old: the outline of the old file.
+        new: the outline of the new file.
         version: the new version, with the parameter files.
     """
-    frames = {frame.strip("/") for frame in _frames(transform, old)}
+    frames = {frame.strip("/") for frame in _parent_and_child(transform, old)}
     if len(frames) != 2 or not transform.name.startswith(TRANSFORM_PUBLISHERS):
         return None
     known = {entry.name for entry in old.entries if entry.kind == "node"}
     for entry in new.entries:
         if entry.kind != "node" or entry.name in known or entry.name.startswith(TRANSFORM_PUBLISHERS):
             continue
-        if condition_holds(new.resolved(entry.settings.get(CONDITION, ""))) is False:
+        if condition_holds(new.resolve(entry.settings.get(CONDITION, ""))) is False:
             continue
         is_localized = _LOCALIZATION.match(entry.name) and all(map(_LOCALIZED.fullmatch, frames))
-        if _ANY_FRAME.match(entry.name) or is_localized or frames <= set(_words(entry, new, version)):
+        if _ANY_FRAME.match(entry.name) or is_localized or frames <= set(_parameter_words(entry, new, version)):
             return entry
     return None
 
 
-def _frames(transform: Entry, outline: LaunchOutline) -> list[str]:
-    """Return the parent and the child of a static transform, or an empty list if they are unknown."""
-    text = outline.resolved(transform.settings.get("arguments", ""))
+def _parent_and_child(transform: Entry, outline: LaunchOutline) -> list[str]:
+    """Return the parent and child frames of a static transform, or an empty list if they are unknown."""
+    text = outline.resolve(transform.settings.get("arguments", ""))
     names = served_names(Entry(transform.kind, transform.name, {"arguments": text}, transform.span))
     if not names:
         return []
@@ -64,12 +64,12 @@ def _frames(transform: Entry, outline: LaunchOutline) -> list[str]:
     return [words[index - 1], names[0]]
 
 
-def _words(node: Entry, outline: LaunchOutline, version: Version) -> Iterator[str]:
+def _parameter_words(node: Entry, outline: LaunchOutline, version: Version) -> Iterator[str]:
     """Yield the words in the parameters of a node, and in the parameter files of the repository that it loads."""
     for setting, value in node.settings.items():
         if not setting.startswith("parameter"):
             continue
-        text = outline.resolved(value)
+        text = outline.resolve(value)
         yield from (word.strip("/") for word in _WORD.findall(text))
         for match in _SHARED.finditer(text):
             share = version.share_of(match["package"], version.root)

@@ -1,4 +1,4 @@
-"""The arguments of launch files that the new version no longer uses, declared or not."""
+"""Report the arguments of launch files that the new version no longer uses, declared or not."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from pathlib import Path
 
 from linkwright.diagnostics import phrase
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.effects import value_reason
+from linkwright.review.launches.effects import argument_removal_reason
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 
 _WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
-_USED = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
+_USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
 _COMMENT = re.compile(r"<!--.*?-->|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
 _PASSES_ALL = "pass_all_args"
 """The attribute with which an include of ROS 1 passes all arguments."""
 
 
-def add_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline, kept: Sequence[Entry]) -> None:
-    """Add the arguments that the old version uses, and that the new one does not use or does not even name.
+def report_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline, kept: Sequence[Entry]) -> None:
+    """Report the arguments that only the old version uses.
 
     Args:
-        pair: the launch file.
+        pair: both versions of the launch file.
         old: the old outline, with the new names of arguments.
-        new: the new outline.
-        kept: the old actions that the new version has, too. The arguments of removed ones go with them.
+        new: the outline of the new file.
+        kept: the old actions that the new version has, too. Arguments of removed actions are not reported.
     """
-    _add_undeclared(pair, old, new)
-    content = _COMMENT.sub("", _text(pair.new_file))
+    _report_undeclared(pair, old, new)
+    content = _COMMENT.sub("", _read_text(pair.new_file))
     if _PASSES_ALL in content or (not new.is_ros1 and any(entry.kind == "include" for entry in new.entries)):
         return  # an included file may use any argument
     old_names = {entry.name for entry in old.entries if _is_argument(entry) and _is_used(entry.name, kept)}
@@ -48,18 +48,22 @@ def _may_use(text: str, name: str) -> bool:
     return is_in_expression is not None or len(re.findall(rf"[\"']{pattern}[\"']", text)) > 1
 
 
-def _add_undeclared(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
-    """Add the arguments that the old version uses without declaring them, and that the new one does not name."""
+def _report_undeclared(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
+    """Report the undeclared arguments that only the old version names."""
     used = {name: entry for entry in old.entries for name in _names_with_default(entry)}
     declared = {entry.name for outline in (old, new) for entry in outline.entries if entry.has_value}
-    text = _text(pair.new_file) if used.keys() - declared else ""
+    text = _read_text(pair.new_file) if used.keys() - declared else ""
     for name, entry in used.items():
         if name not in declared and not re.search(rf"\b{re.escape(name)}\b", text):
             location = pair.location(entry.span, is_old=True)
-            pair.add(phrase("argument '{name}' removed", name=name), location, value_reason(name, is_ros1=old.is_ros1))
+            pair.add(
+                phrase("argument '{name}' removed", name=name),
+                location,
+                argument_removal_reason(name, is_ros1=old.is_ros1),
+            )
 
 
-def _text(file: Path) -> str:
+def _read_text(file: Path) -> str:
     return file.read_text("utf-8", errors="replace")
 
 
@@ -73,4 +77,6 @@ def _is_argument(entry: Entry) -> bool:
 
 def _is_used(name: str, entries: Sequence[Entry]) -> bool:
     """Return whether an action uses an argument."""
-    return any(name in _USED.findall(text) for entry in entries for text in (entry.name, *entry.settings.values()))
+    return any(
+        name in _USED_ARGUMENT.findall(text) for entry in entries for text in (entry.name, *entry.settings.values())
+    )

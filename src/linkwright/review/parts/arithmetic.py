@@ -1,4 +1,4 @@
-"""The values of expressions of numbers, such as ``radians(90)``, in descriptions that are not expanded."""
+"""Evaluate numeric expressions, such as ``radians(90)``, in unexpanded descriptions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
 
 
 def number_of(expression: str, values: Mapping[str, str]) -> str | None:
-    """Return the value of an expression of numbers with 12 digits, or None for any other expression.
+    """Return the value of a numeric expression with 12 digits, or None for any other expression.
 
     Args:
         expression: the expression, without ``${`` and ``}``.
@@ -37,17 +37,17 @@ def number_of(expression: str, values: Mapping[str, str]) -> str | None:
     if len(expression) > _MAX_LENGTH:
         return None
     try:
-        number = _number_of(ast.parse(expression.strip(), mode="eval").body, values)
+        number = _evaluate(ast.parse(expression.strip(), mode="eval").body, values)
     except (ArithmeticError, SyntaxError, ValueError):
         return None
     return f"{number:.12g}" if math.isfinite(number) else None
 
 
-def _number_of(node: ast.expr, values: Mapping[str, str]) -> float:
-    """Return the value of a node.
+def _evaluate(node: ast.expr, values: Mapping[str, str]) -> float:
+    """Return the value of a node of a numeric expression.
 
     Raises:
-        ValueError: the node is none of numbers.
+        ValueError: the node is not a numeric expression.
         ArithmeticError: the value is not defined or too large.
     """
     match node:
@@ -58,9 +58,9 @@ def _number_of(node: ast.expr, values: Mapping[str, str]) -> float:
         case ast.Name(id=name) if name in _CONSTANTS:
             return _CONSTANTS[name]
         case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return -_number_of(operand, values)
+            return -_evaluate(operand, values)
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
-            return _OPERATORS[type(op)](_number_of(left, values), _number_of(right, values))
+            return _OPERATORS[type(op)](_evaluate(left, values), _evaluate(right, values))
         case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
-            return _FUNCTIONS[name](_number_of(argument, values))
+            return _FUNCTIONS[name](_evaluate(argument, values))
     raise ValueError

@@ -1,4 +1,4 @@
-"""The comparison of all changed files with unexpanded descriptions."""
+"""Compare all changed files with unexpanded descriptions."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from linkwright.review.parts.contents import compare_contents, comparison_of
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.interface import (
     IncludeGraphs,
-    call_reason,
     compare_arguments,
     compare_macros,
-    renamed_macros,
+    find_renamed_macros,
+    macro_removal_reason,
 )
 from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.versions import Version, Versions
 
 _SUFFIXES = (".xacro", ".urdf", ".macro", ".gazebo", ".trans", ".inc")
-"""The ends of the names of files with descriptions or parts of them."""
+"""The name endings of files with descriptions or parts of descriptions."""
 _XACRO = ".xacro"
 _SEMANTIC = ".srdf.xacro"
 _MIN_SIMILARITY = 0.5
-"""The share of equal elements from which a macro with another name is a renamed one."""
+"""The minimum share of equal elements of a renamed macro."""
 
 
 def compare_parts(
@@ -42,7 +42,7 @@ def compare_parts(
         versions: both versions.
         files: the changed files of the review.
         subjects: the subjects compared so far.
-        is_complete: a function that returns whether a path is that of a complete robot.
+        is_complete: a function that returns whether a path is a complete robot.
     """
     expanded = {place for subject in subjects for place in subject.expanded}
     result = list(subjects)
@@ -90,7 +90,7 @@ class _Comparer:
         if not is_compared:
             changes += _file_changes(file, old, new)
         if isinstance(old, Outline) and file.new_path is None and not is_compared:
-            changes += _lost_macros([name for name in old.macros if not self._graphs.new.defining(name)])
+            changes += _lost_macros([name for name in old.macros if not self._graphs.new.files_with_macro(name)])
         if file.old_path and file.new_path and isinstance(old, Outline) and isinstance(new, Outline):
             is_complete = is_compared or self._is_complete(file.new_path)
             pair = PartPair(self._versions, file.old_path, file.new_path, old, new, is_complete, self._expanded)
@@ -99,7 +99,7 @@ class _Comparer:
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
 
     def _compare(self, pair: PartPair) -> None:
-        renamed = dict(_renamed(pair))
+        renamed = dict(_find_renamed_macros(pair))
         if not pair.is_complete:
             compare_macros(pair, self._graphs, renamed)
         compare_arguments(pair, self._graphs)
@@ -116,20 +116,20 @@ class _Comparer:
         return outline if path.endswith(_XACRO) or outline.is_description else None
 
 
-def _renamed(pair: PartPair) -> Iterator[tuple[str, str]]:
+def _find_renamed_macros(pair: PartPair) -> Iterator[tuple[str, str]]:
     """Yield the old and new names of renamed macros."""
     similarity: Mapping[tuple[str, str], float] = {
-        (old.name, new.name): _similarity(pair, old, new)
+        (old.name, new.name): _macro_similarity(pair, old, new)
         for old in pair.old.macros.values()
         if old.name not in pair.new.macros
         for new in pair.new.macros.values()
         if new.name not in pair.old.macros
     }
-    yield from renamed_macros(pair, similarity)
+    yield from find_renamed_macros(pair, similarity)
 
 
-def _similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) -> float:
-    """Return the share of equal elements of two macros, or 0 if they are not similar."""
+def _macro_similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) -> float:
+    """Return the share of equal elements of two macros, from 0 to 1; 0 if they are not similar."""
     comparison = comparison_of(pair, old, new)
     contents = [
         Counter(wording.content(child) for child in macro.element.elements())
@@ -141,10 +141,10 @@ def _similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) -> float:
 
 
 def _lost_macros(names: Sequence[str]) -> Iterator[Change]:
-    """Yield the change that macros are gone with their file."""
+    """Yield the change that macros were removed with their file."""
     if names:
         text = phrase("macro '{name}' removed", name=names[0])
-        yield Change(text, Effect.BREAKING, call_reason(), other_names=tuple(names[1:]))
+        yield Change(text, Effect.BREAKING, macro_removal_reason(), other_names=tuple(names[1:]))
 
 
 def _file_changes(file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None) -> Iterator[Change]:

@@ -1,4 +1,4 @@
-"""The changes of elements that no compared robot shows."""
+"""Compare the elements that no compared robot shows."""
 
 from __future__ import annotations
 
@@ -22,57 +22,60 @@ from linkwright.review.merging import common_reason, name_edit
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
-from linkwright.review.parts.wording import Wording, literals_of, properties_of
+from linkwright.review.parts.wording import NameSubstitution, literals_of, properties_of
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80
-"""The number of characters of a value that a line shows."""
+"""The maximum number of characters of a value in a line."""
 _SHOWN_BEGINNING = 20
 """The number of equal characters that are shown before the difference of long values."""
 _MAX_VALUES = 8
-"""The number of values of an added or removed element that a line shows."""
+"""The maximum number of values of an added or removed element in a line."""
 _MAX_WITH_CONTENTS = 8
-"""The number of added or removed elements up to which one line shows the values of each."""
+"""The maximum number of added or removed elements whose values are all shown in one line."""
 _MAX_LINES = 15
-"""The number of changes without a reason that are listed for a file."""
+"""The maximum number of changes without a reason that are listed for a file."""
 _NAMESPACE = "namespace"
-"""The word in tags of a plugin that name no topic or frame by themselves."""
+"""A word in plugin tags that do not name a topic or frame by themselves."""
 _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
 
 
 def comparison_of(pair: PartPair, old: MacroOutline | None = None, new: MacroOutline | None = None) -> ItemComparison:
     """Return the comparison of the elements of two files, or of two macros in them."""
-    renamed = dict(_renamed_properties(pair))
+    renamed = dict(_find_renamed_properties(pair))
     literals = [literals_of(outline.root) for outline in (pair.old, pair.new)]
     if old is not None and new is not None:
-        renamed |= dict(_renamed_parameters(old, new))
+        renamed |= dict(_find_renamed_parameters(old, new))
         for values, macro in zip(literals, (old, new), strict=True):
             for name in macro.parameters:
                 values.pop(name.lstrip("*"), None)
-    return ItemComparison(Wording(literals[0], renamed), Wording(literals[1]))
+    return ItemComparison(NameSubstitution(literals[0], renamed), NameSubstitution(literals[1]))
 
 
 def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
-    """Add the changes of elements that no compared robot shows.
+    """Report the changes of elements that no compared robot shows.
 
     Args:
-        pair: the file.
-        renamed: the new names of macros, by their old names.
+        pair: both versions of the file.
+        renamed: the new names of macros, by old name.
     """
     changes = [
-        _Described(pair, None, each) for each in _hidden(pair, comparison_of(pair), pair.old.root, pair.new.root)
+        _ReportedDifference(pair, None, difference)
+        for difference in _hidden_differences(pair, comparison_of(pair), pair.old.root, pair.new.root)
     ]
     for name, macro in pair.new.macros.items():
         old_name = next((old for old, new in renamed.items() if new == name), name)
         old = pair.old.macros.get(old_name)
         if old is not None:
             comparison = comparison_of(pair, old, macro)
-            differences = _hidden(pair, comparison, old.element, macro.element)
-            changes += (_Described(pair, name, each) for each in differences)
-    pair.changes += _merged(changes)
+            differences = _hidden_differences(pair, comparison, old.element, macro.element)
+            changes += (_ReportedDifference(pair, name, difference) for difference in differences)
+    pair.changes += _merge_differences(changes)
 
 
-def _hidden(pair: PartPair, comparison: ItemComparison, old: Element, new: Element) -> Iterator[PartDifference]:
+def _hidden_differences(
+    pair: PartPair, comparison: ItemComparison, old: Element, new: Element
+) -> Iterator[PartDifference]:
     """Yield the differences between two elements that no compared robot shows."""
     for difference in comparison.differences(old, new):
         if not _is_shown(pair, difference, old, new):
@@ -84,7 +87,7 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     elements = difference.old_element, difference.new_element
     element = elements[1] or elements[0]
     assert element is not None
-    sides = [is_old for is_old, each in zip((True, False), elements, strict=True) if each is not None]
+    sides = [is_old for is_old, element in zip((True, False), elements, strict=True) if element is not None]
     if difference.value == "conditions":
         return _is_condition_shown(pair, difference)
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
@@ -99,7 +102,7 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
 def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
     """Return whether the compared robots show a change of the conditions of an element.
 
-    A condition that comes or goes matters with other arguments, too, also where all compared robots have the element.
+    An added or removed condition matters for other arguments, even if all compared robots have the element.
     """
     has_old = pair.is_expanded(difference.old_element, is_old=True)
     has_new = pair.is_expanded(difference.new_element, is_old=False)
@@ -109,14 +112,14 @@ def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
 
 
 def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) -> bool:
-    """Return whether a compared robot has an element that uses a property, also through other properties."""
+    """Return whether a compared robot has an element that uses a property, directly or through other properties."""
     found = False
     for root, is_old in ((old, True), (new, False)):
         names, pending = {name}, [name]
         while pending:
-            each = pending.pop()
+            property_name = pending.pop()
             for element in root.walk():
-                if not uses_name(element, each):
+                if not uses_name(element, property_name):
                     continue
                 found = True
                 other = element.attributes.get("name", "")
@@ -128,8 +131,8 @@ def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) ->
     return not found and any(pair.is_read(is_old=is_old) for is_old in (True, False))
 
 
-def _renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
-    """Yield the old and the new names of properties that have other names and equal values, in their order."""
+def _find_renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of renamed properties, whose values are equal, in their order."""
     old, new = (
         {name: element.attributes.get("value") for name, element in properties_of(outline.root)}
         for outline in (pair.old, pair.new)
@@ -142,12 +145,12 @@ def _renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
             yield name, match
 
 
-def _renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[str, str]]:
-    """Yield the old and the new names of parameters, if as many have gone as have come with equal defaults."""
-    gone = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
-    come = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
-    if [parameter.default for parameter in gone] == [parameter.default for parameter in come]:
-        for before, after in zip(gone, come, strict=True):
+def _find_renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of renamed parameters, if equally many were removed and added with equal defaults."""
+    removed = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
+    added = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
+    if [parameter.default for parameter in removed] == [parameter.default for parameter in added]:
+        for before, after in zip(removed, added, strict=True):
             yield before.name.lstrip("*"), after.name.lstrip("*")
 
 
@@ -155,14 +158,14 @@ def _renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[
 
 
 @dataclass(frozen=True)
-class _Described:
-    """A difference in a file or macro, with its words.
+class _ReportedDifference:
+    """A difference in a file or macro, with its sentence.
 
     Attributes:
-        pair: the file.
+        pair: both versions of the file.
         macro: the macro that contains it, or None outside of macros.
-        difference: the difference.
-        shows_contents: whether the line about an added or removed element has its values.
+        difference: the difference between both versions.
+        shows_contents: whether the line about an added or removed element contains its values.
     """
 
     pair: PartPair
@@ -172,7 +175,7 @@ class _Described:
 
     @property
     def element(self) -> str:
-        """The path of the changed element, with the attribute."""
+        """The path of the changed element with the attribute."""
         words = [*self.difference.path]
         if len(words) > 1 and words[0] == f"gazebo {words[1]}":
             words[0] = "gazebo"
@@ -192,7 +195,7 @@ class _Described:
 
     @property
     def key(self) -> Hashable:
-        """A key that is equal for changes of several elements that can be one line."""
+        """A key that is equal for changes that can be merged into one line."""
         difference = self.difference
         is_breaking = self.reason is not None
         if difference.is_whole:
@@ -205,37 +208,40 @@ class _Described:
 
     @property
     def name(self) -> str:
-        """The changed element among others with the same change: its path or, if it was renamed, both names."""
+        """The name of the element in a merged line: its path, or both names of a renamed element."""
         if self.difference.value == "name" and self.difference.new is not None:
             return f"{self.difference.old} -> {self.difference.new}"
         return self.element
 
-    def name_beside(self, first: _Described) -> str | None:
-        """Return the name beside that of the first element with the same change, or None if it tells nothing more.
+    def name_beside(self, first: _ReportedDifference) -> str | None:
+        """Return the name to list after the first element with the same change, or None if it adds nothing.
 
-        Elements with other values have these, and elements without names of their own have their attributes.
+        Elements with other values are listed with the values, and elements without a name with their attributes.
         """
         if self.element != first.element:
             has_other_contents = self.shows_contents and str(self.contents) != str(first.contents)
             return f"{self.name}: {self.contents}" if has_other_contents and self.contents is not None else self.name
         difference = self.difference
-        value, first_value = (each.new or each.old or "" for each in (difference, first.difference))
-        return f"{self.element} {_cut(value)}" if difference.is_whole and value != first_value else None
+        value, first_value = (changed.new or changed.old or "" for changed in (difference, first.difference))
+        return f"{self.element} {_truncate(value)}" if difference.is_whole and value != first_value else None
 
     def _sentence(self) -> Phrase:
         difference = self.difference
         if difference.value == "conditions":
-            old, new = (text or phrase("always") for text in _shortened(difference.old or "", difference.new or ""))
+            old, new = (
+                text or phrase("always")
+                for text in _shorten_common_beginning(difference.old or "", difference.new or "")
+            )
             return phrase("{element}: condition {old} -> {new}", element=self.element, old=old, new=new)
         if difference.new is None or difference.old is None:
-            return self._presence()
-        old, new = _shortened(difference.old, difference.new)
+            return self._presence_text()
+        old, new = _shorten_common_beginning(difference.old, difference.new)
         return phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
 
-    def _presence(self) -> Phrase:
-        """Return that one version has a value, or an element with its values."""
+    def _presence_text(self) -> Phrase:
+        """Return the sentence about an added or removed value or element."""
         difference = self.difference
-        value = _cut((difference.new if difference.old is None else difference.old) or "")
+        value = _truncate((difference.new if difference.old is None else difference.old) or "")
         name = f"{self.element} {value}".strip()
         text = phrase("{element} added", element=name)
         if difference.new is None:
@@ -251,7 +257,7 @@ class _Described:
 
     @property
     def reason(self) -> Phrase | None:
-        """Why the change is breaking, or None if it is not."""
+        """The reason why the change is breaking, or None if it is not."""
         difference, old = self.difference, self.difference.old_element
         if old is None:
             return None
@@ -278,7 +284,7 @@ class _Described:
         return extension_reason(Difference("extension", root, "changed", name, difference.old or "-", difference.new))
 
     def _lost_name_reason(self, old: Element) -> Phrase | None:
-        """Return why the removal of an element of Gazebo is breaking: no other one has a name in it."""
+        """Return the reason why removing a Gazebo element is breaking, or None if another element has its names."""
         kept = _words_of(self.pair.new.root)
         for element in old.walk():
             text = " ".join(element.text().split())
@@ -290,16 +296,16 @@ class _Described:
         return None
 
 
-def _merged(differences: list[_Described]) -> Iterator[Change]:
-    """Yield the changes, one line for equal ones, and the number of those beyond the limit."""
-    groups: dict[Hashable, list[_Described]] = {}
-    for each in differences:
-        groups.setdefault(each.key, []).append(each)
+def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Change]:
+    """Yield the changes, equal ones in one line, and the number of changes beyond the limit."""
+    groups: dict[Hashable, list[_ReportedDifference]] = {}
+    for difference in differences:
+        groups.setdefault(difference.key, []).append(difference)
     changes = []
     for first, *others in groups.values():
-        if len({str(each.contents) for each in (first, *others)}) > 1:
+        if len({str(difference.contents) for difference in (first, *others)}) > 1:
             shows_contents = len(others) < _MAX_WITH_CONTENTS
-            first, *others = (replace(each, shows_contents=shows_contents) for each in (first, *others))
+            first, *others = (replace(difference, shows_contents=shows_contents) for difference in (first, *others))
         names = dict.fromkeys(name for other in others if (name := other.name_beside(first)) is not None)
         reason = common_reason(described.reason for described in (first, *others))
         changes.append(replace(first.change, reason=reason, other_names=tuple(names)))
@@ -313,7 +319,7 @@ def _merged(differences: list[_Described]) -> Iterator[Change]:
 
 
 def _words_of(root: Element) -> set[str]:
-    """Return the texts and values of attributes of a file, and the targets of remappings such as ``~/out:=scan``."""
+    """Return the words in texts and attributes of a file, and the targets of remappings such as ``~/out:=scan``."""
     words: set[str] = set()
     for element in root.walk():
         for text in (element.text(), *element.attributes.values()):
@@ -322,17 +328,17 @@ def _words_of(root: Element) -> set[str]:
     return words
 
 
-def _cut(text: str) -> str:
+def _truncate(text: str) -> str:
     text = " ".join(text.split())
     return text if len(text) <= _MAX_CHARACTERS else f"{text[:_MAX_CHARACTERS]}..."
 
 
-def _shortened(old: str, new: str) -> tuple[str, str]:
-    """Return two values without most of the beginning that long ones have in common."""
+def _shorten_common_beginning(old: str, new: str) -> tuple[str, str]:
+    """Return two values, with the common beginning of long values shortened."""
     texts = [" ".join(text.split()) for text in (old, new)]
     pairs = zip(*texts, strict=False)
     common = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
     if max(map(len, texts)) <= _MAX_CHARACTERS or common <= _SHOWN_BEGINNING:
-        return _cut(texts[0]), _cut(texts[1])
-    first, second = (_cut(f"...{text[common - _SHOWN_BEGINNING :]}") for text in texts)
+        return _truncate(texts[0]), _truncate(texts[1])
+    first, second = (_truncate(f"...{text[common - _SHOWN_BEGINNING :]}") for text in texts)
     return first, second

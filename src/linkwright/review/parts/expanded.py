@@ -1,4 +1,4 @@
-"""The elements of changed files that the expansions of the compared robots use."""
+"""Find the elements of changed files that the expansions of the compared robots use."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from linkwright.xmltree import Element
 
 
 def expanded_places(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedPlace]:
-    """Yield the elements of changed files that two expansions used: written elements, macro calls and includes."""
+    """Yield the elements of changed files that two expansions use: written elements, macro calls and includes."""
     for version, description in ((versions.old, old), (versions.new, new)):
         paths = {file.old_path if version.is_old else file.new_path for file in versions.changed_files}
-        yield from _places(version, description, {path for path in paths if path})
+        yield from _used_places(version, description, {path for path in paths if path})
 
 
-def _places(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedPlace]:
+def _used_places(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedPlace]:
     names: dict[str, str] = {}
     for file in description.files:
         path = version.relative(file)
@@ -29,16 +29,16 @@ def _places(version: Version, description: Description, paths: set[str]) -> Iter
         return
     seen: set[int] = set()
     for element in description.document.root.walk():
-        yield from _place(element, names, version)
+        yield from _element_place(element, names, version)
         frame = element.origin if isinstance(element.origin, Frame) else None
-        for each in frames(frame):
-            if id(each) in seen:
+        for call_frame in frames(frame):
+            if id(call_frame) in seen:
                 break
-            seen.add(id(each))
-            yield from _place(each.site, names, version)
+            seen.add(id(call_frame))
+            yield from _element_place(call_frame.site, names, version)
 
 
-def _place(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedPlace]:
+def _element_place(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedPlace]:
     path = None if element.source is None else names.get(element.source.name)
     if path is not None:
         yield ExpandedPlace(path, element.offset, version.is_old)

@@ -1,4 +1,4 @@
-"""Which files include which, and which of them declare an argument or a macro, in one version."""
+"""Record the includes between descriptions, and the arguments and macros that they declare."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.lint.inclusions import folders_by_package
 from linkwright.lint.targets import DESCRIPTIONS, walk
-from linkwright.review.parts.outline import Outline, outline_or_none
+from linkwright.review.parts.outline import Outline, try_read_outline
 from linkwright.review.versions import Version
 
 
@@ -16,44 +16,44 @@ class IncludeGraph:
     """The includes between the descriptions of a version.
 
     Args:
-        version: the version.
+        version: the version of the repository.
     """
 
     def __init__(self, version: Version) -> None:
         self._version = version
 
     def declares(self, path: str, is_declared: Callable[[Outline], bool]) -> bool:
-        """Return whether a file, or one that it includes, declares something."""
-        return any(is_declared(self._outlines[each]) for each in self._closure(path, self._included))
+        """Return whether a file or one of its included files has an outline that fulfills a condition."""
+        return any(is_declared(self._outlines[reachable]) for reachable in self._reachable(path, self._included))
 
     def robots_with(self, path: str) -> list[str]:
-        """Return the files that include a file, also through others, and that no other file includes."""
-        return [each for each in self._closure(path, self._includers) if not self._includers[each]]
+        """Return the top-level files that include a file, directly or indirectly."""
+        return [reachable for reachable in self._reachable(path, self._includers) if not self._includers[reachable]]
 
-    def defining(self, macro: str) -> list[str]:
+    def files_with_macro(self, macro: str) -> list[str]:
         """Return the files that define a macro."""
         return [path for path, outline in self._outlines.items() if macro in outline.macros]
 
-    def _closure(self, path: str, edges: dict[str, set[str]]) -> Iterator[str]:
+    def _reachable(self, path: str, edges: dict[str, set[str]]) -> Iterator[str]:
         pending, seen = [path], {path}
         while pending:
-            each = pending.pop()
-            if each not in self._outlines:
+            current = pending.pop()
+            if current not in self._outlines:
                 continue
-            yield each
-            pending += sorted(edges[each] - seen)
-            seen |= edges[each]
+            yield current
+            pending += sorted(edges[current] - seen)
+            seen |= edges[current]
 
     @cached_property
-    def _walked(self) -> tuple[list[Path], list[Path]]:
+    def _description_files(self) -> tuple[list[Path], list[Path]]:
         return walk(self._version.root, DESCRIPTIONS)
 
     @cached_property
     def _outlines(self) -> dict[str, Outline]:
         """The outlines of the descriptions that can be read, by path."""
         outlines: dict[str, Outline] = {}
-        for file in self._walked[0]:
-            outline, path = outline_or_none(file), self._version.relative(file)
+        for file in self._description_files[0]:
+            outline, path = try_read_outline(file), self._version.relative(file)
             if outline is not None and path is not None:
                 outlines[path] = outline
         return outlines
@@ -61,7 +61,7 @@ class IncludeGraph:
     @cached_property
     def _included(self) -> dict[str, set[str]]:
         """The files that each file can include."""
-        packages = folders_by_package(self._walked[1])
+        packages = folders_by_package(self._description_files[1])
         by_name: dict[str, list[str]] = {}
         for path in self._outlines:
             by_name.setdefault(Path(path).name, []).append(path)

@@ -1,4 +1,4 @@
-"""The changes of names that other descriptions and callers use: macros, their parameters, and arguments."""
+"""Compare the names that other descriptions and callers use: macros, their parameters, and arguments."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class IncludeGraphs:
     """The includes of both versions.
 
     Attributes:
-        old: those of the old version.
-        new: those of the new version.
+        old: the includes of the old version.
+        new: the includes of the new version.
     """
 
     old: IncludeGraph
@@ -29,10 +29,10 @@ class IncludeGraphs:
 
 
 def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, str]) -> None:
-    """Add the macros and parameters that the new version of a part adds, removes or changes.
+    """Report the macros and parameters that the new version of a part adds, removes or changes.
 
     Args:
-        pair: the part.
+        pair: both versions of the part.
         graphs: the includes of both versions.
         renamed: the new names of macros, by their old names.
     """
@@ -45,24 +45,24 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
         if name in renamed:
             new = pair.new.macros[renamed[name]]
             text = phrase("macro '{old}' renamed to '{name}'", old=name, name=new.name)
-            pair.add(text, macro.element, new.element, call_reason())
+            pair.add(text, macro.element, new.element, macro_removal_reason())
             _compare_parameters(pair, macro, new)
         elif name not in pair.new.macros and not _has_macro(graphs.new, pair.new_path, name):
-            _add_lost_macro(pair, macro, graphs.new)
+            _report_lost_macro(pair, macro, graphs.new)
 
 
-def _add_lost_macro(pair: PartPair, macro: MacroOutline, graph: IncludeGraph) -> None:
-    others = graph.defining(macro.name)
+def _report_lost_macro(pair: PartPair, macro: MacroOutline, graph: IncludeGraph) -> None:
+    others = graph.files_with_macro(macro.name)
     if not others:
-        pair.add(phrase("macro '{name}' removed", name=macro.name), macro.element, None, call_reason())
+        pair.add(phrase("macro '{name}' removed", name=macro.name), macro.element, None, macro_removal_reason())
         return
     text = phrase("macro '{name}' moved to {path}", name=macro.name, path=", ".join(others[:2]))
     reason = phrase("descriptions that include only this file do not find the macro")
     pair.add(text, macro.element, None, reason)
 
 
-def call_reason() -> Phrase:
-    """Return why it is breaking that a macro is gone."""
+def macro_removal_reason() -> Phrase:
+    """Return the reason why removing a macro is breaking."""
     return phrase("descriptions that call the macro cannot be expanded")
 
 
@@ -71,7 +71,7 @@ def _has_macro(graph: IncludeGraph, path: str, name: str) -> bool:
 
 
 def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) -> None:
-    """Add the parameters that a macro has gained or lost, and the changes of their defaults."""
+    """Report the added and removed parameters of a macro, and the changes of their defaults."""
     lost = [name for name in old.parameters if name not in new.parameters]
     gained = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
     renamed = dict(
@@ -89,7 +89,7 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
     lost = [name for name in lost if name not in renamed]
     gained = [parameter for parameter in gained if parameter.name not in renamed.values()]
     required = [parameter.name for parameter in gained if not _has_default(parameter)]
-    optional = [_with_default(parameter) for parameter in gained if _has_default(parameter)]
+    optional = [_text_with_default(parameter) for parameter in gained if _has_default(parameter)]
     for names, change, reason in (
         (
             lost,
@@ -123,17 +123,17 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
 def _compare_defaults(
     pair: PartPair, old_macro: MacroOutline, new_macro: MacroOutline, old: Parameter, new: Parameter
 ) -> None:
-    if _default(old) == _default(new):
+    if _default_text(old) == _default_text(new):
         return
     reason = None
     if not _has_default(new):
         change = phrase("parameter {name} has no default any more", name=new.name)
         reason = phrase("calls that do not pass it cannot be expanded")
     elif not _has_default(old):
-        change = phrase("parameter {name} has the default {value}", name=new.name, value=_default(new))
+        change = phrase("parameter {name} has the default {value}", name=new.name, value=_default_text(new))
     else:
         name = phrase("default of parameter {name}", name=new.name)
-        change = change_text(name, _default(old), _default(new))
+        change = change_text(name, _default_text(old), _default_text(new))
     text = phrase("macro '{name}': {change}", name=new_macro.name, change=change)
     pair.add(text, old_macro.element, new_macro.element, reason)
 
@@ -142,20 +142,20 @@ def _has_default(parameter: Parameter) -> bool:
     return parameter.default is not None or parameter.forward
 
 
-def _default(parameter: Parameter) -> str:
-    """Return a default as it is written, without the difference between single and double spaces."""
+def _default_text(parameter: Parameter) -> str:
+    """Return a default as written, with single spaces."""
     text = " ".join((parameter.default or "").split())
     return f"^|{text}" if parameter.forward and text else "^" if parameter.forward else text
 
 
-def _with_default(parameter: Parameter) -> str:
-    return f"{parameter.name}:={_default(parameter)}"
+def _text_with_default(parameter: Parameter) -> str:
+    return f"{parameter.name}:={_default_text(parameter)}"
 
 
 def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
-    """Add the arguments that the new version of a file adds, removes, renames or changes.
+    """Report the arguments that the new version of a file adds, removes, renames or changes.
 
-    An argument that moves between a robot and its parts is none of these.
+    An argument that moves between a robot and its parts is not reported.
     """
     added = {
         name: element
@@ -167,7 +167,7 @@ def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
         for name, element in pair.old.arguments.items()
         if name not in pair.new.arguments and not _is_declared(graphs.new, pair.new_path, name)
     }
-    renamed = renamed_names(_defaults(removed), _defaults(added), pair.old.root, pair.new.root)
+    renamed = renamed_names(_defaults_by_name(removed), _defaults_by_name(added), pair.old.root, pair.new.root)
     old_names = {name: old_name for old_name, name in renamed}
     for name, element in pair.new.arguments.items():
         if name in pair.old.arguments:
@@ -177,12 +177,12 @@ def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
             text = phrase("argument '{old}' renamed to '{name}'", old=old_name, name=name)
             pair.add(text, removed.pop(old_name), element, _unused_value_reason(old_name))
         elif name in added:
-            _add_argument(pair, name, element)
+            _report_added_argument(pair, name, element)
     for name, element in removed.items():
         pair.add(phrase("argument '{name}' removed", name=name), element, None, _unused_value_reason(name))
 
 
-def _add_argument(pair: PartPair, name: str, element: Element) -> None:
+def _report_added_argument(pair: PartPair, name: str, element: Element) -> None:
     default = element.attributes.get("default")
     if default is None:
         reason = phrase("callers must pass '{name}'", name=name)
@@ -195,7 +195,7 @@ def _unused_value_reason(name: str) -> Phrase:
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 
-def _defaults(arguments: Mapping[str, Element]) -> dict[str, str | None]:
+def _defaults_by_name(arguments: Mapping[str, Element]) -> dict[str, str | None]:
     return {name: element.attributes.get("default") for name, element in arguments.items()}
 
 
@@ -216,7 +216,7 @@ def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
 
 
 def _is_declared(graph: IncludeGraph, path: str, name: str) -> bool:
-    """Return whether all robots with a file declare an argument."""
+    """Return whether all robots that include a file declare an argument."""
 
     def is_declared(outline: Outline) -> bool:
         return name in outline.arguments
@@ -225,12 +225,12 @@ def _is_declared(graph: IncludeGraph, path: str, name: str) -> bool:
     return all(graph.declares(robot, is_declared) for robot in robots)
 
 
-def renamed_macros(pair: PartPair, similarity: Mapping[tuple[str, str], float]) -> Iterator[tuple[str, str]]:
-    """Yield the old and the new names of macros that have other names and similar contents.
+def find_renamed_macros(pair: PartPair, similarity: Mapping[tuple[str, str], float]) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of renamed macros, whose contents are similar.
 
     Args:
-        pair: the part.
-        similarity: the share of equal elements of two macros, by their names.
+        pair: both versions of the part.
+        similarity: the share of equal elements of two macros, from 0 to 1, by their names.
     """
     taken: set[str] = set()
     for name in pair.old.macros:

@@ -1,4 +1,4 @@
-"""The outline of an unexpanded description: its arguments, properties and macros, and the elements in them."""
+"""Read the outline of an unexpanded description: its arguments, properties, macros and elements."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Item:
 
     Attributes:
         key: the tag and the name, which identify the element among its siblings.
-        element: the element.
+        element: the XML element.
         conditions: the conditions, such as ``if ${x}``, the outermost first.
     """
 
@@ -39,10 +39,10 @@ class Item:
 
 @dataclass(frozen=True)
 class MacroOutline:
-    """A macro as it is written.
+    """An unexpanded macro.
 
     Attributes:
-        name: the name.
+        name: the name of the macro.
         element: the element that defines it.
     """
 
@@ -76,7 +76,7 @@ class Outline:
 
     @property
     def is_description(self) -> bool:
-        """Whether it is a robot, a part of one, or another document with macros or arguments."""
+        """Whether it is a robot, a part of a robot, or another document with macros or arguments."""
         return self.root.tag == "robot" or bool(self.macros) or bool(self.arguments)
 
 
@@ -99,7 +99,7 @@ def read_outline(file: Path) -> Outline:
     return Outline(document.root, macros, arguments, tuple(inclusions_in(text)))
 
 
-def outline_or_none(file: Path) -> Outline | None:
+def try_read_outline(file: Path) -> Outline | None:
     """Return the outline of a file, or None if it cannot be read."""
     try:
         return read_outline(file) if file.is_file() else None
@@ -108,23 +108,23 @@ def outline_or_none(file: Path) -> Outline | None:
 
 
 def items_of(element: Element, conditions: tuple[str, ...] = ()) -> Iterator[Item]:
-    """Yield the elements inside an element, also those in conditions, without macros and arguments."""
+    """Yield the elements inside an element and its conditions, without macros and arguments."""
     for child in element.elements():
         if child.tag in (ARG, MACRO):
             continue
         word = _CONDITIONS.get(child.tag)
         if word is None:
-            yield Item(_key(child), child, conditions)
+            yield Item(_item_key(child), child, conditions)
         else:
             yield from items_of(child, (*conditions, f"{word} {child.attributes.get('value', '')}"))
 
 
-def joined_item(items: Sequence[Item], conditions: tuple[str, ...] | None) -> Item:
+def join_items(items: Sequence[Item], conditions: tuple[str, ...] | None) -> Item:
     """Return several ``<gazebo>`` elements of a link as one.
 
     Args:
-        items: the elements.
-        conditions: the conditions that all of them have; None for several, which then are around their children.
+        items: the elements to join.
+        conditions: the common conditions of all elements; None if they differ, to keep them around the children.
     """
     first = items[0]
     if conditions is not None:
@@ -146,8 +146,8 @@ def _with_inner_conditions(item: Item) -> Element:
     return result
 
 
-def _key(element: Element) -> str:
-    """Return the tag and the name of an element. An element without a name has that of its plugin or sensor."""
+def _item_key(element: Element) -> str:
+    """Return the tag and name of an element. An element without a name gets the name of its plugin or sensor."""
     name = element.attributes.get("name") or element.attributes.get("reference")
     if element.tag == GAZEBO and name is None:
         inner = element.first("plugin") or element.first("sensor")

@@ -1,4 +1,4 @@
-"""A changed file with an unexpanded description, in both versions."""
+"""Define a changed file with an unexpanded description, in both versions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.xmltree import Element
 
 @dataclass
 class PartPair:
-    """A changed file with an unexpanded description, to which a comparison adds its changes.
+    """A changed file with an unexpanded description. A comparison adds its changes.
 
     Attributes:
         versions: both versions.
@@ -37,7 +37,7 @@ class PartPair:
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
-        """Add a change at the location of the new element, or else of the old one; it is breaking with a reason."""
+        """Report a change at the location of the new or else the old element. A change with a reason is breaking."""
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         self.changes.append(Change(sentence, effect, reason, self._location(old, new)))
 

@@ -1,4 +1,4 @@
-"""Arguments of descriptions and parameters of macros that have new names, and are used as the old ones were."""
+"""Find renamed arguments of descriptions and parameters of macros by their uses."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from linkwright.xmltree import Element
 
 _MIN_COMMON = 0.5
-"""The share of equal uses from which a name is another one for the same value."""
+"""The minimum share of equal uses of a renamed value."""
 _EXPRESSION = re.compile(r"\$\{[^}]*\}|\$\(arg [^)]*\)")
 _MARK = "*"
 
@@ -16,7 +16,7 @@ _MARK = "*"
 def renamed_names(
     removed: Mapping[str, str | None], added: Mapping[str, str | None], old: Element, new: Element
 ) -> Iterator[tuple[str, str]]:
-    """Yield the old and the new names of values that have the same default and the same uses.
+    """Yield the old and new names of values with equal defaults and equal uses.
 
     Args:
         removed: the defaults of the removed names; None for those without a default.
@@ -24,24 +24,24 @@ def renamed_names(
         old: the element that uses the removed names.
         new: the element that uses the added names.
     """
-    new_uses = {name: set(_uses(new, name)) for name in added}
+    new_uses = {name: set(_find_uses(new, name)) for name in added}
     for name, default in removed.items():
-        uses = set(_uses(old, name))
-        shares = {other: _share(uses, new_uses[other]) for other in new_uses if added[other] == default}
+        uses = set(_find_uses(old, name))
+        shares = {other: _shared_fraction(uses, new_uses[other]) for other in new_uses if added[other] == default}
         best = max(shares, key=lambda other: shares[other], default=None)
         if best is not None and shares[best] >= _MIN_COMMON:
             del new_uses[best]
             yield name, best
 
 
-def _share(old: set[Hashable], new: set[Hashable]) -> float:
+def _shared_fraction(old: set[Hashable], new: set[Hashable]) -> float:
     return len(old & new) / len(old | new) if old and new else 0.0
 
 
-def _uses(root: Element, name: str) -> Iterator[Hashable]:
-    """Yield the texts and attributes whose expressions use a name, with a mark in its place.
+def _find_uses(root: Element, name: str) -> Iterator[Hashable]:
+    """Yield the texts and attributes whose expressions use a name, with a mark in place of the name.
 
-    Of an attribute, the other attributes of the element are a part, unless it hands the value on by the same name.
+    The other attributes of the element count, too, unless an attribute passes the value on by the same name.
     """
     word = re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
     for element in root.walk():

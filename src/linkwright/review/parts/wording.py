@@ -1,4 +1,4 @@
-"""Texts of unexpanded descriptions, made comparable."""
+"""Normalize texts of unexpanded descriptions, so that they can be compared."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ _LITERAL = re.compile(r"[^${}]*")
 
 
 @dataclass(frozen=True)
-class Wording:
-    """The meaning of the names in a text.
+class NameSubstitution:
+    """A substitution of names and values in texts.
 
     Attributes:
         literals: the values of properties without expressions, by name.
-        renamed: the new names of parameters and properties, by their old names.
+        renamed: the new names of parameters and properties, by old name.
     """
 
     literals: Mapping[str, str] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)
 
-    def translated(self, text: str) -> str:
+    def rename_names(self, text: str) -> str:
         """Return a text with the new names of parameters and properties, and single spaces."""
         text = " ".join(text.split())
         if not self.renamed or "$" not in text:
             return text
         return _EXPRESSION.sub(lambda match: _WORD.sub(lambda word: self.renamed.get(word[0], word[0]), match[0]), text)
 
-    def resolved(self, text: str) -> str:
-        """Return a text with the values of literal properties and of expressions, and with numbers in one form."""
-        text = _EXPRESSION.sub(self._value, " ".join(text.split()))
-        return " ".join(map(_number, text.split()))
+    def resolve_values(self, text: str) -> str:
+        """Return a text with the values of literal properties and expressions, and with normalized numbers."""
+        text = _EXPRESSION.sub(self._resolve_expression, " ".join(text.split()))
+        return " ".join(map(_normalize_number, text.split()))
 
-    def _value(self, match: re.Match[str]) -> str:
+    def _resolve_expression(self, match: re.Match[str]) -> str:
         content = match[1].strip()
         value = self.literals.get(content, content)
         if content in self.literals or _is_number(content):
@@ -49,14 +49,14 @@ class Wording:
     def content(self, element: Element) -> Hashable:
         """Return the comparable content of an element, without white space, comments and nested macros."""
         attributes = frozenset(
-            (name, self.resolved(self.translated(value))) for name, value in element.attributes.items()
+            (name, self.resolve_values(self.rename_names(value))) for name, value in element.attributes.items()
         )
         children = tuple(self.content(child) for child in element.elements() if child.tag not in (ARG, MACRO))
-        return element.tag, attributes, self.resolved(self.translated(element.text())), children
+        return element.tag, attributes, self.resolve_values(self.rename_names(element.text())), children
 
 
 def literals_of(root: Element) -> dict[str, str]:
-    """Return the values of the properties of a file that have one value without expressions, by name."""
+    """Return the literal property values of a file by name."""
     values: dict[str, str | None] = {}
     for name, element in properties_of(root):
         value = element.attributes.get("value")
@@ -66,13 +66,13 @@ def literals_of(root: Element) -> dict[str, str]:
 
 
 def properties_of(root: Element) -> Iterator[tuple[str, Element]]:
-    """Yield the properties of a file with their names, also those inside macros."""
+    """Yield the names and elements of the properties of a file, including properties inside macros."""
     for element in root.walk():
         if element.tag == PROPERTY and "name" in element.attributes:
             yield element.attributes["name"], element
 
 
-def _number(word: str) -> str:
+def _normalize_number(word: str) -> str:
     return f"{float(word):.12g}" if _is_number(word) else word
 
 

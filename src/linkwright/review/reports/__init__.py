@@ -1,4 +1,4 @@
-"""Reports of a review: text, Markdown, HTML, and data for programs."""
+"""Write the report of a review as text, Markdown, HTML, or data for programs."""
 
 from linkwright.review.reports.data import as_data, as_diagnostics
 from linkwright.review.reports.html import as_html

@@ -1,4 +1,4 @@
-"""The report of a review as data for programs."""
+"""Write the report of a review as data for programs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def as_data(review: Review) -> dict[str, Any]:
     return {
         "old": review.old_name,
         "new": review.new_name or None,
-        "subjects": [_subject(subject) for subject in review.subjects],
+        "subjects": [_subject_data(subject) for subject in review.subjects],
         "other_files": list(review.other_files),
         "new_findings": [to_data(finding) for finding in review.new_findings],
         "fixed_findings": [to_data(finding) for finding in review.fixed_findings],
@@ -34,60 +34,60 @@ def as_diagnostics(review: Review) -> list[Diagnostic]:
             BREAKING_CODE,
             phrase("{change}: {reason}", change=sentence_of(change), reason=change.reason or ""),
             severity=Severity.WARNING,
-            span=_span(change.location),
+            span=_location_span(change.location),
         )
         for _, change in review.breaking_changes
     ]
     return [*breaking, *review.new_findings]
 
 
-def _span(location: Location | None) -> Span | None:
+def _location_span(location: Location | None) -> Span | None:
     """Return the location in the new version, or None for a removed element."""
     if location is None or location.is_old:
         return None
     return Span(location.file, location.line, location.column, location.line, location.column)
 
 
-def _subject(subject: Subject) -> dict[str, Any]:
+def _subject_data(subject: Subject) -> dict[str, Any]:
     return {
         "kind": subject.kind.value,
         "path": subject.path,
         "old_path": subject.old_path,
         "new_path": subject.new_path,
         "argument_sets": list(subject.cases),
-        "changes": [_change(change) for change in subject.changes],
+        "changes": [_change_data(change) for change in subject.changes],
         "figures": [
             {"name": str(figure.name), "old": figure.old, "new": figure.new, "unit": figure.unit}
             for figure in subject.figures
         ],
-        "paths": [_paths(comparison) for comparison in subject.paths],
+        "paths": [_paths_data(comparison) for comparison in subject.paths],
         "problems": [str(problem.text) for problem in subject.problems],
     }
 
 
-def _paths(comparison: PathComparison) -> dict[str, Any]:
-    """Return the paths of runs with the same parameters: times in s, positions in m."""
+def _paths_data(comparison: PathComparison) -> dict[str, Any]:
+    """Return the paths of runs with the same parameters as data: times in s, positions in m."""
     return {
         "name": comparison.name,
         "parameters": comparison.parameters,
         "runs": [
             {
                 "seed": pair.seed,
-                "distance": _rounded(pair.distance),
-                "time": _rounded(pair.time),
-                "old": [list(map(_rounded, point)) for point in pair.old],
-                "new": [list(map(_rounded, point)) for point in pair.new],
+                "distance": _round(pair.distance),
+                "time": _round(pair.time),
+                "old": [list(map(_round, point)) for point in pair.old],
+                "new": [list(map(_round, point)) for point in pair.new],
             }
             for pair in comparison.shown
         ],
     }
 
 
-def _rounded(number: float) -> float:
+def _round(number: float) -> float:
     return round(number, _DIGITS) + 0.0
 
 
-def _change(change: Change) -> dict[str, Any]:
+def _change_data(change: Change) -> dict[str, Any]:
     location = change.location
     return {
         "text": str(change.sentence),

@@ -1,4 +1,4 @@
-"""The report of a review as one HTML page that needs no other file."""
+"""Write the report of a review as one self-contained HTML page."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from linkwright.review.reports.sections import (
     alike_text,
     breaking_changes,
     cases_text,
-    grouped_findings,
+    group_findings,
     other_files,
     paths_text,
     repeated_text,
     sections_of,
     sentence_of,
-    summary,
+    summary_text,
 )
 
 _STYLE = """
@@ -65,15 +65,17 @@ def as_html(review: Review) -> str:
     title = phrase("Robot review: {old} to {new}", old=review.old_name, new=new)
     scenes = Scenes(review.subjects)
     parts = [
-        f"<h1>{_text(title)}</h1><p class='soft'>{_text(summary(review))}</p>",
-        *_breaking(review),
-        *(_section(section, scenes) for section in sections_of(review)),
-        *_findings(phrase("New findings"), review.new_findings),
-        *_findings(phrase("Fixed findings"), review.fixed_findings),
-        *_list(phrase("Other changed files"), [_other_file(*file) for file in other_files(review)]),
-        *_list(phrase("Notes"), [_text(note) for note in review.notes]),
+        f"<h1>{_escape_text(title)}</h1><p class='soft'>{_escape_text(summary_text(review))}</p>",
+        *_breaking_html(review),
+        *(_section_html(section, scenes) for section in sections_of(review)),
+        *_findings_html(phrase("New findings"), review.new_findings),
+        *_findings_html(phrase("Fixed findings"), review.fixed_findings),
+        *_list_html(phrase("Other changed files"), [_other_file(*file) for file in other_files(review)]),
+        *_list_html(phrase("Notes"), [_escape_text(note) for note in review.notes]),
     ]
-    head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{_text(title)}</title>'
+    head = (
+        f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{_escape_text(title)}</title>'
+    )
     style = f"<style>{_STYLE}{PLOT_STYLE}{SCENE_STYLE}</style>"
     return (
         f'<!doctype html>\n<html lang="{language()}"><head>{head}{style}</head>'
@@ -82,108 +84,108 @@ def as_html(review: Review) -> str:
 
 
 def _other_file(path: str, state: Phrase | None) -> str:
-    return f"<code>{escape(path)}</code>" + ("" if state is None else f" ({_text(state)})")
+    return f"<code>{escape(path)}</code>" + ("" if state is None else f" ({_escape_text(state)})")
 
 
-def _breaking(review: Review) -> Iterator[str]:
+def _breaking_html(review: Review) -> Iterator[str]:
     subjects = {subject.path: subject for subject in review.subjects}
     items = [
-        f"{_change(change, subjects[paths[0]])} <code>{_text(paths_text(paths))}</code>"
+        f"{_change_html(change, subjects[paths[0]])} <code>{_escape_text(paths_text(paths))}</code>"
         for paths, change in breaking_changes(review)
     ]
-    yield from _list(phrase("Breaking changes"), items)
+    yield from _list_html(phrase("Breaking changes"), items)
 
 
-def _section(section: Section, scenes: Scenes) -> str:
+def _section_html(section: Section, scenes: Scenes) -> str:
     subject = section.subject
-    items = [_change(change, subject) for change in section.changes]
-    items += [_text(repeated_text(path, count)) for path, count in section.repeated]
+    items = [_change_html(change, subject) for change in section.changes]
+    items += [_escape_text(repeated_text(path, count)) for path, count in section.repeated]
     alike = alike_text(section)
-    items += [] if alike is None else [_text(alike)]
-    items += [f"<span class='breaking'>{_text(problem.text)}</span>" for problem in subject.problems]
+    items += [] if alike is None else [_escape_text(alike)]
+    items += [f"<span class='breaking'>{_escape_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
     plots = "".join(map(path_plot, subject.paths))
     return (
         f"<h2><code>{escape(subject.path)}</code></h2><section>"
-        f"{_images(subject.images)}{scenes.element(subject.scene)}{_figures(subject.figures)}{changes}{plots}</section>"
+        f"{_images_html(subject.images)}{scenes.element(subject.scene)}{_figures_html(subject.figures)}{changes}{plots}</section>"
     )
 
 
-def _change(change: Change, subject: Subject) -> str:
-    text = _text(sentence_of(change))
+def _change_html(change: Change, subject: Subject) -> str:
+    text = _escape_text(sentence_of(change))
     if change.effect is Effect.BREAKING:
         text = f"<strong class='breaking'>{text}</strong>"
     if change.reason is not None:
-        text += f": {_text(change.reason)}"
+        text += f": {_escape_text(change.reason)}"
     cases = cases_text(change, subject)
     if cases is not None:
-        text += f" <span class='soft' title='{escape(', '.join(change.cases))}'>{_text(cases)}</span>"
+        text += f" <span class='soft' title='{escape(', '.join(change.cases))}'>{_escape_text(cases)}</span>"
     if change.location is not None:
         text += f" <code class='soft'>{escape(change.location.file)}:{change.location.line}</code>"
     return text
 
 
-def _figures(figures: Sequence[Figure]) -> str:
+def _figures_html(figures: Sequence[Figure]) -> str:
     if not figures:
         return ""
     names = (phrase("quantity"), phrase("before"), phrase("after"), phrase("unit"))
-    head = "".join(f"<th>{_text(name)}</th>" for name in names)
+    head = "".join(f"<th>{_escape_text(name)}</th>" for name in names)
     rows = (
-        f"<tr><td>{_text(figure.name)}</td><td>{escape(figure.old)}</td><td>{escape(figure.new)}</td>"
+        f"<tr><td>{_escape_text(figure.name)}</td><td>{escape(figure.old)}</td><td>{escape(figure.new)}</td>"
         f"<td>{escape(figure.unit)}</td></tr>"
         for figure in figures
     )
     return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
 
 
-def _images(images: Sequence[ViewImages]) -> str:
+def _images_html(images: Sequence[ViewImages]) -> str:
     if not images:
         return ""
-    return f"<div class='images'>{''.join(map(_image, images))}</div>"
+    return f"<div class='images'>{''.join(map(_image_html, images))}</div>"
 
 
-def _image(view: ViewImages) -> str:
-    """Return a view of both versions; the slider moves the border between the old one, at the left, and the new one."""
+def _image_html(view: ViewImages) -> str:
+    """Return a view of both versions. A slider moves the border between the old (left) and the new version."""
     if not view.old or not view.new:
-        return _lone_image(view)
+        return _lone_image_html(view)
     old, new = (f"data:image/png;base64,{b64encode(image).decode()}" for image in (view.old, view.new))
     label = escape(localized(phrase("old and new version, {view} view", view=view.name)))
     return (
         f"<figure><div class='versions'><img src='{old}' alt='{label}'><img class='new' src='{new}' alt=''></div>"
         f"<input type='range' min='0' max='100' value='50' aria-label='{label}'>"
-        f"<figcaption><span>{_text(phrase('before'))}</span><span>{escape(view.name)}</span>"
-        f"<span>{_text(phrase('after'))}</span></figcaption></figure>"
+        f"<figcaption><span>{_escape_text(phrase('before'))}</span><span>{escape(view.name)}</span>"
+        f"<span>{_escape_text(phrase('after'))}</span></figcaption></figure>"
     )
 
 
-def _lone_image(view: ViewImages) -> str:
+def _lone_image_html(view: ViewImages) -> str:
     """Return a view of a robot that only one version has."""
     image = b64encode(view.old or view.new).decode()
     version = phrase("before") if view.old else phrase("after")
     label = escape(localized(phrase("{view} view", view=view.name)))
     return (
         f"<figure><img src='data:image/png;base64,{image}' alt='{label}'>"
-        f"<figcaption><span>{_text(version)}</span><span>{escape(view.name)}</span></figcaption></figure>"
+        f"<figcaption><span>{_escape_text(version)}</span><span>{escape(view.name)}</span></figcaption></figure>"
     )
 
 
-def _findings(title: Phrase, findings: Sequence[Diagnostic]) -> Iterator[str]:
+def _findings_html(title: Phrase, findings: Sequence[Diagnostic]) -> Iterator[str]:
     items = []
-    for finding in grouped_findings(findings):
+    for finding in group_findings(findings):
         place = (
             ""
             if finding.span is None
             else f" <code class='soft'>{escape(finding.span.file)}:{finding.span.line}</code>"
         )
-        items.append(f"{finding.severity.value} {finding.code}: {_text(finding.message)}{place}")
-    yield from _list(title, items)
+        items.append(f"{finding.severity.value} {finding.code}: {_escape_text(finding.message)}{place}")
+    yield from _list_html(title, items)
 
 
-def _list(title: Phrase, items: Sequence[str]) -> Iterator[str]:
+def _list_html(title: Phrase, items: Sequence[str]) -> Iterator[str]:
     if items:
         lines = "".join(f"<li>{item}</li>" for item in items)
-        yield f"<h2>{_text(title)}</h2><section><ul>{lines}</ul></section>"
+        yield f"<h2>{_escape_text(title)}</h2><section><ul>{lines}</ul></section>"
 
 
-def _text(text: str) -> str:
+def _escape_text(text: str) -> str:
     return escape(localized(text) if isinstance(text, Phrase) else text)

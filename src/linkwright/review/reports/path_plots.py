@@ -1,4 +1,4 @@
-"""Plots of the paths of robots, of the old and the new version in one, as SVG in HTML."""
+"""Plot the paths of robots in both versions as SVG in HTML."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ _LEFT, _RIGHT, _TOP, _BOTTOM = 52.0, 16.0, 12.0, 38.0
 _MAX_HEIGHT, _MIN_HEIGHT = 440.0, 150.0
 """The limits of the height of the area with the paths."""
 _GRID = 70.0
-"""The least distance of two lines of the grid."""
+"""The minimum distance of two grid lines in the drawing."""
 _MARGIN = 0.05
 """The free space on each side, as a fraction of the longer side of the box around the paths."""
 _NOTE = 70.0
-"""The space that the text of a distance needs."""
+"""The space for the text of a distance in the drawing."""
 _MIN_SPAN = 0.02
-"""The least length in m of the longer side of the box."""
+"""The minimum length in m of the longer side of the box around the paths."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class _Frame:
         return _TOP + self.height - (position - self.low[1]) * self.scale
 
     def ticks(self, axis: int) -> Iterator[tuple[float, str]]:
-        """Yield the positions of the lines of the grid with their labels, at round numbers of meters."""
+        """Yield the positions and labels of the grid lines, at round numbers of meters."""
         length = (self.height if axis else _WIDTH - _LEFT - _RIGHT) / self.scale
         step = _round_step(_GRID / self.scale)
         digits = max(0, -floor(log10(step) + 1e-9))
@@ -90,30 +90,30 @@ class _Frame:
 
 
 def path_plot(comparison: PathComparison) -> str:
-    """Return a figure with all shown paths thin, and the typical pair thick. The farthest pair has a line between."""
+    """Return a figure with thin lines for all shown paths and thick lines for the typical pair."""
     frame = _Frame.around(comparison)
     typical = comparison.typical
     content = "".join(
         (
-            *_grid(frame),
-            *(_path(frame, pair.old, "old thin", pair.seed) for pair in comparison.shown),
-            *(_path(frame, pair.new, "new thin", pair.seed) for pair in comparison.shown),
-            _path(frame, typical.old, "old thick", typical.seed),
-            _path(frame, typical.new, "new thick", typical.seed),
-            *_marks(frame, typical),
-            _apart(frame, comparison.farthest),
+            *_grid_lines(frame),
+            *(_path_line(frame, pair.old, "old thin", pair.seed) for pair in comparison.shown),
+            *(_path_line(frame, pair.new, "new thin", pair.seed) for pair in comparison.shown),
+            _path_line(frame, typical.old, "old thick", typical.seed),
+            _path_line(frame, typical.new, "new thick", typical.seed),
+            *_end_marks(frame, typical),
+            _distance_line(frame, comparison.farthest),
         )
     )
     title = comparison.title
     label = phrase("paths of both versions, {name}", name=title)
     height = _TOP + frame.height + _BOTTOM
     return (
-        f"<figure class='plot'><figcaption><strong>{escape(title)}</strong>{_legend(comparison)}</figcaption>"
-        f"<svg viewBox='0 0 {_WIDTH:g} {height:.0f}' role='img' aria-label='{_text(label)}'>{content}</svg></figure>"
+        f"<figure class='plot'><figcaption><strong>{escape(title)}</strong>{_legend_html(comparison)}</figcaption>"
+        f"<svg viewBox='0 0 {_WIDTH:g} {height:.0f}' role='img' aria-label='{_escape(label)}'>{content}</svg></figure>"
     )
 
 
-def _grid(frame: _Frame) -> Iterator[str]:
+def _grid_lines(frame: _Frame) -> Iterator[str]:
     bottom, right = _TOP + frame.height, _WIDTH - _RIGHT
     for position, text in frame.ticks(0):
         x = frame.x(position)
@@ -129,13 +129,13 @@ def _grid(frame: _Frame) -> Iterator[str]:
     yield f"<text class='tick' transform='translate(12 {middle:.1f}) rotate(-90)' text-anchor='middle'>y [m]</text>"
 
 
-def _path(frame: _Frame, path: Points, kind: str, seed: str) -> str:
+def _path_line(frame: _Frame, path: Points, kind: str, seed: str) -> str:
     points = " ".join(f"{frame.x(x):.1f},{frame.y(y):.1f}" for _, x, y in path)
-    name = _text(phrase("seed {seed}", seed=seed))
+    name = _escape(phrase("seed {seed}", seed=seed))
     return f"<polyline class='path {kind}' points='{points}'><title>{name}</title></polyline>"
 
 
-def _marks(frame: _Frame, pair: PathPair) -> Iterator[str]:
+def _end_marks(frame: _Frame, pair: PathPair) -> Iterator[str]:
     """Yield the marks at the start and at the end of both paths."""
     for kind, path in (("old", pair.old), ("new", pair.new)):
         _, x, y = path[-1]
@@ -145,8 +145,8 @@ def _marks(frame: _Frame, pair: PathPair) -> Iterator[str]:
         yield f"<rect class='start' x='{left:.1f}' y='{top:.1f}' width='10' height='10'/>"
 
 
-def _apart(frame: _Frame, pair: PathPair) -> str:
-    """Return the line between both robots where they are farthest apart, with the distance."""
+def _distance_line(frame: _Frame, pair: PathPair) -> str:
+    """Return the line between both robots at their largest distance, with the distance."""
     (x1, y1), (x2, y2) = ((frame.x(x), frame.y(y)) for x, y in pair.ends)
     x, y = (x1 + x2) / 2.0, (y1 + y2) / 2.0
     is_left = x < _WIDTH - _RIGHT - _NOTE
@@ -157,7 +157,7 @@ def _apart(frame: _Frame, pair: PathPair) -> str:
     )
 
 
-def _legend(comparison: PathComparison) -> str:
+def _legend_html(comparison: PathComparison) -> str:
     farthest, count = comparison.farthest, len(comparison.pairs)
     apart = phrase("farthest apart: seed {seed}, after {time:.3g} s", seed=farthest.seed, time=farthest.time)
     entries: list[tuple[str, Phrase]] = [
@@ -174,7 +174,7 @@ def _legend(comparison: PathComparison) -> str:
 
 def _legend_entry(mark: str, text: Phrase) -> str:
     drawing = f"<svg viewBox='0 0 26 12' aria-hidden='true'>{mark}</svg>" if mark else ""
-    return f"<span>{drawing}{_text(text)}</span>"
+    return f"<span>{drawing}{_escape(text)}</span>"
 
 
 def _round_step(minimum: float) -> float:
@@ -183,5 +183,5 @@ def _round_step(minimum: float) -> float:
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= minimum * (1.0 - 1e-9))
 
 
-def _text(text: Phrase) -> str:
+def _escape(text: Phrase) -> str:
     return escape(localized(text))

@@ -1,6 +1,6 @@
-"""The scenes in 3D of a report, in frames that are made when a user opens them.
+"""Write the 3D scenes of a report into frames that are created when a user opens them.
 
-The program that draws them is in the page once, compressed. Each frame has an origin of its own (`sandbox`), and the
+The page contains the drawing program once, compressed. Each frame has an origin of its own (`sandbox`), and the
 policy of an exported page: its program can fetch nothing.
 """
 
@@ -41,7 +41,7 @@ for (const scene of document.querySelectorAll("details.scene")) {
 """
 
 _MAX_BYTES = 40_000_000
-"""The maximum size of all scenes of a page. Later ones are left out."""
+"""The maximum size of all scenes of a page. Further scenes are left out."""
 
 
 class Scenes:
@@ -72,25 +72,25 @@ class Scenes:
 
         title = localized(phrase("both versions in 3D"))
         viewer = gzip.compress("\0".join(page_around(title)).encode(), mtime=0)
-        return f"{_packed(viewer, 'viewer')}<script>{SCENE_SCRIPT}</script>"
+        return f"{_pack(viewer, 'viewer')}<script>{SCENE_SCRIPT}</script>"
 
     def element(self, scene: RobotScene | None) -> str:
-        """Return the element of a scene, or the sentence why there is none; empty if none was asked for."""
+        """Return the element of a scene, or the reason why there is none; empty if no scene was requested."""
         if scene is None:
             return ""
         if scene.reason is not None:
-            return f"<p class='soft'>{_text(scene.reason)}</p>"
+            return f"<p class='soft'>{_escape_text(scene.reason)}</p>"
         if id(scene) not in self._shown:
             reason = phrase("the scene in 3D is left out: those before it have {size:.0f} MB", size=_MAX_BYTES / 1e6)
-            return f"<p class='soft'>{_text(reason)}</p>"
-        title = _text(phrase("both versions in 3D"))
-        return f"<details class='scene'><summary>{title}</summary>{_packed(scene.data)}</details>"
+            return f"<p class='soft'>{_escape_text(reason)}</p>"
+        title = _escape_text(phrase("both versions in 3D"))
+        return f"<details class='scene'><summary>{title}</summary>{_pack(scene.data)}</details>"
 
 
-def _packed(data: bytes, name: str = "") -> str:
+def _pack(data: bytes, name: str = "") -> str:
     attribute = f" id='{name}'" if name else ""
     return f"<script type='application/gzip'{attribute}>{b64encode(data).decode()}</script>"
 
 
-def _text(text: Phrase) -> str:
+def _escape_text(text: Phrase) -> str:
     return escape(localized(text))

@@ -1,4 +1,4 @@
-"""The report of a review as text for a terminal."""
+"""Write the report of a review as text for a terminal."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from linkwright.review.reports.sections import (
     Section,
     alike_text,
     cases_text,
-    grouped_findings,
+    group_findings,
     other_files,
     repeated_text,
     sections_of,
     sentence_of,
-    summary,
+    summary_text,
 )
 
 _MAX_OTHER_FILES = 20
-"""The number of files that are listed although they were not compared."""
+"""The maximum number of files that are listed although they were not compared."""
 _NEWLINE = "\N{SYMBOL FOR NEWLINE}"
-"""The character for a newline in the name of a file, which must not begin a line of its own."""
+"""The character that replaces a newline in the name of a file."""
 
 
 def as_text(review: Review) -> str:
     """Return the report as text in the user's language, a line for each change."""
-    return "".join(printable(line).replace("\n", _NEWLINE) + "\n" for line in _lines(review))
+    return "".join(printable(line).replace("\n", _NEWLINE) + "\n" for line in _report_lines(review))
 
 
-def _lines(review: Review) -> Iterator[str]:
+def _report_lines(review: Review) -> Iterator[str]:
     for section in sections_of(review):
-        yield from _section(section)
+        yield from _section_lines(section)
     if review.other_files:
         yield localized(phrase("other changed files"))
         files = other_files(review)
@@ -49,14 +49,14 @@ def _lines(review: Review) -> Iterator[str]:
     ):
         if findings:
             yield localized(title)
-            yield from map(_finding, grouped_findings(findings))
+            yield from map(_finding_text, group_findings(findings))
             yield ""
     for note in review.notes:
         yield localized(phrase("note: {text}", text=note))
-    yield localized(summary(review))
+    yield localized(summary_text(review))
 
 
-def _section(section: Section) -> Iterator[str]:
+def _section_lines(section: Section) -> Iterator[str]:
     subject = section.subject
     yield subject.path
     for change in section.changes:
@@ -79,7 +79,7 @@ def _section(section: Section) -> Iterator[str]:
     yield ""
 
 
-def _finding(finding: Diagnostic) -> str:
+def _finding_text(finding: Diagnostic) -> str:
     location = "" if finding.span is None else f"{finding.span.file}:{finding.span.line}: "
     message: Phrase | str = finding.message
     text = localized(message) if isinstance(message, Phrase) else message

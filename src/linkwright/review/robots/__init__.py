@@ -1,1 +1,1 @@
-"""Comparisons of two robots: figures, reach, collisions and shared argument sets."""
+"""Compare two robots: figures, reach, collisions and shared argument sets."""

@@ -1,4 +1,4 @@
-"""The lines about added links, with the joints that attach them."""
+"""Write the lines about added links, with the joints that attach them."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _MAX_LINKS = 4
 
 
 class AddedLinks:
-    """The links and joints that a robot has gained.
+    """The added links and joints of a robot.
 
     Args:
         differences: the differences of the robots.
-        new: the new robot.
+        new: the robot of the new version.
     """
 
     def __init__(self, differences: Sequence[Difference], new: Robot) -> None:
-        added = {(each.subject, each.name) for each in differences if each.kind == "added"}
+        added = {(difference.subject, difference.name) for difference in differences if difference.kind == "added"}
         links = [name for subject, name in added if subject == "link"]
         self._links = {} if len(links) > _MAX_LINKS else {name: new.links[name] for name in links if name in new.links}
         self._joints = {
@@ -33,20 +33,20 @@ class AddedLinks:
         }
 
     def is_in_line_of_link(self, difference: Difference) -> bool:
-        """Return whether the line about a link says that a joint was added."""
+        """Return whether the line about an added link already names an added joint."""
         is_joint = (difference.subject, difference.kind) == ("joint", "added")
         return is_joint and any(joint.name == difference.name for joint in self._joints.values())
 
     def sentence(self, difference: Difference) -> Phrase | None:
-        """Return the line about an added link with its contents, or None for other differences."""
+        """Return the line about an added link with its contents; None for other differences."""
         link = self._links.get(difference.name)
         if link is None or (difference.subject, difference.kind) != ("link", "added"):
             return None
-        parts = [*self._place(link.name), *_contents(link)]
+        parts = [*self._parent_and_origin(link.name), *_link_contents(link)]
         text = phrase("{subject} '{name}' added", subject=term("link"), name=link.name)
         return phrase("{change}: {contents}", change=text, contents=joined(parts)) if parts else text
 
-    def _place(self, name: str) -> Iterator[Phrase]:
+    def _parent_and_origin(self, name: str) -> Iterator[Phrase]:
         joint = self._joints.get(name)
         if joint is not None:
             yield phrase(
@@ -57,26 +57,26 @@ class AddedLinks:
                 xyz=" ".join(f"{number:.6g}" for number in joint.origin.xyz),
             )
             if any(joint.origin.rpy):
-                angles = " ".join(f"{_degrees(angle):g}" for angle in joint.origin.rpy)
+                angles = " ".join(f"{_to_degrees(angle):g}" for angle in joint.origin.rpy)
                 yield phrase("rpy {angles}°", angles=angles)
 
 
-def _contents(link: Link) -> Iterator[Phrase]:
+def _link_contents(link: Link) -> Iterator[Phrase]:
     """Yield the shapes and the mass of a link."""
     for shape, count in Counter(_shape_text(visual.geometry) for visual in link.visuals).items():
-        yield _counted(phrase("visual {shape}", shape=shape), count)
+        yield _with_count(phrase("visual {shape}", shape=shape), count)
     for shape, count in Counter(_shape_text(collision.geometry) for collision in link.collisions).items():
-        yield _counted(phrase("collision {shape}", shape=shape), count)
+        yield _with_count(phrase("collision {shape}", shape=shape), count)
     if link.inertial is not None and link.inertial.has_mass:
         yield phrase("mass {mass:.4g} kg", mass=link.inertial.properties.mass)
 
 
-def _degrees(angle: float) -> float:
-    """Return an angle in degrees; angles that are written with a rounded pi have none behind the point."""
+def _to_degrees(angle: float) -> float:
+    """Return an angle in degrees, rounded to an integer if it was written with a rounded pi."""
     return round(math.degrees(angle), 2) + 0.0
 
 
-def _counted(part: Phrase, count: int) -> Phrase:
+def _with_count(part: Phrase, count: int) -> Phrase:
     return part if count == 1 else phrase("{part} ({count} times)", part=part, count=count)
 
 

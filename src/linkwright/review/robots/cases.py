@@ -1,4 +1,4 @@
-"""The descriptions to compare: both versions with each set of argument values that a caller passes."""
+"""Find the cases to compare: both versions of a description with each argument set of their callers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.review.robots.partial_robots import PartialPair, missing_names, 
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12
-"""The maximum number of argument sets to compare. Vendors' launch files can combine hundreds."""
+"""The maximum number of argument sets to compare. Launch files of vendors can combine hundreds."""
 
 
 _MAX_SWITCHES = 8
@@ -33,8 +33,8 @@ class Case:
 
     Attributes:
         name: the values as ``name:=value`` words; empty for the defaults.
-        old: the old description.
-        new: the new description.
+        old: the description in the old version.
+        new: the description in the new version.
         models: both models.
         partial: both robots, if they lack packages or files that neither version has; else None.
     """
@@ -48,12 +48,12 @@ class Case:
 
 @dataclass
 class _Values:
-    """Values with which one or both versions are called.
+    """An argument set with which one or both versions are called.
 
     Attributes:
         old: the values, with the paths of the old version.
         new: the values, with the paths of the new version.
-        doubt: how many reasons there are why the values may not occur in combination; 0 if they do.
+        doubt: the number of reasons why the values may not occur together; 0 if they do.
         is_of_old: whether the old version is called with them.
         is_of_new: whether the new version is called with them.
     """
@@ -67,7 +67,7 @@ class _Values:
 
 @dataclass(frozen=True)
 class _Failure:
-    """An argument set with which a version cannot be read, and the results for both versions."""
+    """An argument set that fails in a version, and the results for both versions."""
 
     name: str
     values: _Values
@@ -75,10 +75,10 @@ class _Failure:
     new: Description | LinkwrightError
 
 
-def cases(pair: FilePair) -> Iterator[Case]:
-    """Yield the description with each set of values that one of the versions is called with.
+def find_cases(pair: FilePair) -> Iterator[Case]:
+    """Yield the description with each argument set with which a caller uses one of the versions.
 
-    If a version cannot be read with a set, this is a problem, or a change if only one of the versions cannot.
+    A set that fails in both versions is reported as a problem; a set that fails in one version, as a change.
     """
     sets = _argument_sets(pair)
     certain = sum(not values.doubt for values in sets.values())
@@ -87,24 +87,24 @@ def cases(pair: FilePair) -> Iterator[Case]:
         pair.add_problem(text)
     failures: list[_Failure] = []
     for name, values in list(sets.items())[:_MAX_CASES]:
-        result = _case(pair, name, values)
+        result = _make_case(pair, name, values)
         if isinstance(result, Case):
             yield result
         else:
             failures.append(result)
     if not pair.cases and all(_needs_values(failure) for failure in failures):
         failures = yield from _cases_with_tried_values(pair, failures)
-    _report(pair, failures)
+    _report_failures(pair, failures)
 
 
-def switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Case]:
+def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Case]:
     """Yield the description with the opposite value of each boolean argument that both versions have.
 
-    A part that a condition includes is not in the cases whose callers keep the default. The other values are those of
+    The cases of callers that keep the default lack the parts under a condition. The other values come from
     the case that reads most of the changed files.
 
     Args:
-        pair: the description.
+        pair: both versions of the description.
         compared: the cases that show no change.
     """
     changed = {file.new_path for file in pair.versions.changed_files if file.new_path}
@@ -128,12 +128,12 @@ def switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Case]:
     for name, value in list(opposites.items())[:_MAX_SWITCHES]:
         new = {**base.models.new.values, name: value}
         values = _Values({**base.models.old.values, name: value}, new, 1)
-        result = _case(pair, _case_name(new, pair.versions.new), values)
+        result = _make_case(pair, _case_name(new, pair.versions.new), values)
         if isinstance(result, Case):
             yield result
 
 
-def _case(pair: FilePair, name: str, values: _Values) -> Case | _Failure:
+def _make_case(pair: FilePair, name: str, values: _Values) -> Case | _Failure:
     versions = pair.versions
     models = Pair(versions.old.model(pair.old_path, values.old), versions.new.model(pair.new_path, values.new))
     old, new = _read(models.old), _read(models.new)
@@ -154,9 +154,9 @@ def _case(pair: FilePair, name: str, values: _Values) -> Case | _Failure:
 
 
 def _cases_with_tried_values(pair: FilePair, failures: list[_Failure]) -> Generator[Case, None, list[_Failure]]:
-    """Yield the description with values for arguments that have none, and return the other failures.
+    """Yield the description with values for arguments without one, and return the remaining failures.
 
-    Arguments in conditions are tried as false, and then each of them as true. Others are empty.
+    Arguments in conditions are false, and then each in turn is true. Other arguments are empty.
     """
     values: dict[str, str] = dict(failures[0].values.new)
     tried: list[str] = []
@@ -168,19 +168,19 @@ def _cases_with_tried_values(pair: FilePair, failures: list[_Failure]) -> Genera
         name, is_condition = argument
         values[name] = "false" if is_condition else ""
         tried += [name] if is_condition else []
-        result = _tried_case(pair, values)
+        result = _try_case(pair, values)
     if isinstance(result, _Failure):
         return failures
     yield result
     for name in tried:
-        result = _tried_case(pair, {**values, name: "true"})
+        result = _try_case(pair, {**values, name: "true"})
         if isinstance(result, Case):
             yield result
     return []
 
 
-def _tried_case(pair: FilePair, values: Mapping[str, str]) -> Case | _Failure:
-    return _case(pair, _case_name(values, pair.versions.new), _Values(values, values, 1))
+def _try_case(pair: FilePair, values: Mapping[str, str]) -> Case | _Failure:
+    return _make_case(pair, _case_name(values, pair.versions.new), _Values(values, values, 1))
 
 
 def _needs_values(failure: _Failure) -> bool:
@@ -188,7 +188,7 @@ def _needs_values(failure: _Failure) -> bool:
 
 
 def _argument_without_value(result: Description | LinkwrightError) -> tuple[str, bool] | None:
-    """Return the name of an argument that is not declared, and whether it is used in a condition."""
+    """Return the name of an undeclared argument and whether a condition uses it; None for other results."""
     if isinstance(result, Description) or result.diagnostics[0].code != UNDECLARED:
         return None
     first = result.diagnostics[0]
@@ -199,14 +199,14 @@ def _argument_without_value(result: Description | LinkwrightError) -> tuple[str,
 
 
 def _argument_sets(pair: FilePair) -> dict[str, _Values]:
-    """Return the argument sets of both versions by name: the most certain ones first, then those of the new version."""
+    """Return the argument sets of both versions by name: the most certain sets first, the new version before the old."""
     sets: dict[str, _Values] = {}
     for version, path in ((pair.versions.new, pair.new_path), (pair.versions.old, pair.old_path)):
         for called in _called_sets(version, path):
             values = called.values
-            translated = {name: pair.versions.translated(value, version) for name, value in values.items()}
+            translated = {name: pair.versions.translate_paths(value, version) for name, value in values.items()}
             old, new = (values, translated) if version.is_old else (translated, values)
-            doubt = _doubt(called)
+            doubt = _count_doubts(called)
             found = sets.setdefault(_case_name(new, pair.versions.new), _Values(old, new, doubt))
             found.doubt = min(found.doubt, doubt)
             if version.is_old:
@@ -217,12 +217,12 @@ def _argument_sets(pair: FilePair) -> dict[str, _Values]:
 
 
 def _called_sets(version: Version, path: str) -> list[ArgumentSet]:
-    """Return the sets with which a description is called, or its defaults if it is not."""
+    """Return the argument sets with which a description is called, or its defaults if it has no caller."""
     return version.checker().argument_sets(version.file(path), ()) or [ArgumentSet({})]
 
 
-def _doubt(called: ArgumentSet) -> int:
-    """Return how many reasons there are why values may not occur in combination."""
+def _count_doubts(called: ArgumentSet) -> int:
+    """Return the number of reasons why the values may not occur together."""
     is_guess = called.is_mixed or (called.is_offered and not called.is_certain)
     is_call = called.is_complete and not called.is_offered  # an offered value may not fit the other defaults
     return (0 if is_call else 1) + len(called.runtime_names) + (_MAX_CASES if is_guess else 0)
@@ -242,7 +242,7 @@ def _read(model: Model) -> Description | LinkwrightError:
 
 
 def _partial_pair(models: Pair) -> PartialPair | None:
-    """Return both robots without missing packages and files, or None if they cannot be read without them either."""
+    """Return both robots without missing packages and files, or None if they remain unreadable."""
     old, new = read_partial_robot(models.old), read_partial_robot(models.new)
     if old is None or new is None:
         return None
@@ -250,10 +250,10 @@ def _partial_pair(models: Pair) -> PartialPair | None:
     return partial if missing_names(partial, models.old, models.new) else None
 
 
-def _report(pair: FilePair, failures: list[_Failure]) -> None:
-    """Add the argument sets with which a version cannot be read.
+def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
+    """Report the argument sets with which a version cannot be read.
 
-    A version need not be readable with a set that no caller passes to it, or with values that may not occur in
+    A failure does not count with a set that no caller passes to the version, or with values that may not occur in
     combination.
     """
     names: dict[tuple[Fault | None, Fault | None], list[str]] = {}
@@ -271,22 +271,22 @@ def _report(pair: FilePair, failures: list[_Failure]) -> None:
     for (old, new), cases_of_fault in names.items():
         pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else ())
         if new is None:
-            _add_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
+            _report_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
     pair.cases += (name for cases_of_fault in names.values() for name in cases_of_fault)
 
 
-def _add_contents(pair: FilePair, description: Description | LinkwrightError) -> None:
-    """Add the parts of the robot of a description that only the new version can read."""
+def _report_contents(pair: FilePair, description: Description | LinkwrightError) -> None:
+    """Report the parts of a robot whose description only the new version can read."""
     if isinstance(description, Description) and description.robot is not None:
         pair.changes.append(Change(robot_text(description.robot)))
 
 
 def fault_of(result: Description | LinkwrightError, version: Version) -> Fault | None:
-    """Return why a version cannot be read, or None if it can."""
+    """Return the fault that makes a version unreadable, or None if it can be read."""
     if isinstance(result, Description):
         return None
     first = result.diagnostics[0]
     reason = without_folder(first.message, version.root)
     if first.span is None:
         return Fault(reason)
-    return Fault(reason, version.unlabeled(first.span.file), first.span.line, first.span.column)
+    return Fault(reason, version.path_of_label(first.span.file), first.span.line, first.span.column)

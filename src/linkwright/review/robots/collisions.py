@@ -1,4 +1,4 @@
-"""Links of a robot that collide in the new version and not in the old one, computed by MuJoCo.
+"""Find links of a robot that collide in the new version only, by MuJoCo.
 
 Each mesh is replaced by its convex hull, as in simulations. Links that a joint connects directly, or fixed joints only,
 are left out: they touch where they are connected.
@@ -26,19 +26,19 @@ from linkwright.urdf.bodies import Bodies
 
 _SAMPLES = 300
 _MIN_COUNT = 3
-"""The minimum number of colliding samples for which a collision is reported. Small changes move the border of a few."""
+"""The minimum number of colliding samples of a reported collision. Small changes affect a few samples."""
 _MIN_CORNERS = 4
 _MIN_THICKNESS = 1e-6
-"""The maximum thickness of a mesh that has no volume, as a fraction of its length."""
+"""The maximum thickness of a mesh without volume, as a fraction of its length."""
 _DEPTH = 1e-4
-"""The depth in m from which two shapes collide; shapes that only touch do not."""
+"""The minimum depth in m of a collision. Shapes that only touch do not collide."""
 
 Array = NDArray[np.float64]
 Pair = tuple[str, str]
 
 
 def may_change_collisions(differences: Iterable[Difference]) -> bool:
-    """Return whether differences can change which links collide: shapes, the places of links, or limits of joints."""
+    """Return whether differences can change collisions: shapes, poses of links, or limits of joints."""
     return any(
         difference.kind != "renamed"
         and (
@@ -54,18 +54,18 @@ def collision_changes(
 ) -> Iterator[Change]:
     """Yield the pairs of links that collide in the new version only.
 
-    Nothing is found without MuJoCo (extra ``sim``), or of links that the old version does not have.
+    Nothing is yielded without MuJoCo (extra ``sim``) or for links that the old version lacks.
 
     Args:
-        old: the old robot.
-        new: the new robot.
+        old: the robot of the old version.
+        new: the robot of the new version.
         links: the new names of the links that both robots have, by old name.
-        disabled: the pairs of links whose collisions do not count, such as those of a semantic description (SRDF).
+        disabled: the pairs of links whose collisions do not count, such as the disabled pairs of a semantic description (SRDF).
     """
     if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
         return
     try:
-        counts_before, new_counts = _collisions(old), _collisions(new)
+        counts_before, new_counts = _find_collisions(old), _find_collisions(new)
     except ValueError:
         return
     old_counts = {frozenset(links.get(name, "") for name in pair): counts for pair, counts in counts_before.items()}
@@ -88,8 +88,8 @@ def collision_changes(
             yield Change(text)
 
 
-def _collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
-    """Return the pairs of links that collide: whether at home, and in how many of the sampled configurations.
+def _find_collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
+    """Return for each colliding pair whether it collides at home, and the number of sampled configurations.
 
     Raises:
         ValueError: MuJoCo refuses a shape.
@@ -156,7 +156,7 @@ class _Scene:
         self._links.append(name)
 
     def _add_shape(self, spec: Any, body: Any, collision: Collision) -> bool:
-        """Add a collision to a body, and return whether MuJoCo can use its shape."""
+        """Add a collision shape to a body, and return whether MuJoCo can use it."""
         kinds, shape = self._mujoco.mjtGeom, collision.geometry
         place = placement(collision.origin)
         x, y, z, w = quaternion_from_matrix(np.array(place.rotation))
@@ -184,15 +184,15 @@ class _Scene:
             mesh = self._measures.meshes.load(shape, collision.element)
         except LinkwrightError:
             return None
-        points = _distinct(mesh.vertices[np.unique(mesh.faces)])
+        points = _distinct_points(mesh.vertices[np.unique(mesh.faces)])
         if len(points) < _MIN_CORNERS:
             return None
         extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         return points if extents[-1] > _MIN_THICKNESS * extents[0] else None
 
 
-def _distinct(points: Array) -> Array:
-    """Return different points, shape (n, 3), by a sum that is different for each of them.
+def _distinct_points(points: Array) -> Array:
+    """Return the distinct points, shape (n, 3), found by a weighted sum that differs for each point.
 
     Sorting these sums takes a fifth of the time of ``np.unique`` on rows.
     """

@@ -1,4 +1,4 @@
-"""The comparison of a description in two versions, with each set of argument values that its callers pass."""
+"""Compare two versions of a description with each argument set of its callers."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from linkwright.review.element_values import own_content
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
-from linkwright.review.merging import common_reason, merged
+from linkwright.review.merging import common_reason, merge_changes
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.parts.expanded import expanded_places
-from linkwright.review.left_names import left_names
+from linkwright.review.left_names import find_left_names
 from linkwright.review.plugins import added_topics, contents_text, is_still_offered, missing_topics_reason
-from linkwright.review.replaced_plugins import PluginReplacement, with_replaced_plugins
+from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
-from linkwright.review.robots.cases import Case, cases, switched_cases
+from linkwright.review.robots.cases import Case, find_cases, find_switched_cases
 from linkwright.review.robots.collisions import collision_changes, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, figures_of
-from linkwright.review.robots.joined_values import JoinedDifferences, with_joined_values
+from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
 _EXPRESSION = b"$(find "
 _REFERENCE = "reference"
-"""The attribute of ``<gazebo>`` with the link or joint, which is the name of the extension."""
+"""The attribute of ``<gazebo>`` that names the link or joint, and thus the extension."""
 _DETAILS_OF_INERTIAL = ("origin rpy 0 0 0", "inertia ixy", "inertia ixz", "inertia iyz")
 
 
@@ -44,14 +44,14 @@ def compare_descriptions(pair: FilePair) -> None:
     """Compare two versions of a description with each set of argument values."""
     groups: dict[Hashable, _Group] = {}
     collisions: list[Change] = []
-    for case in _cases(pair, groups):
+    for case in _cases_to_compare(pair, groups):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
         pair.expanded.update(expanded_places(pair.versions, case.old, case.new))
         comparison = case.models.compare(case.old.robot, case.new.robot)
         frames = SharedFrames(case.old.robot, case.new.robot, comparison.links)
-        for change in _changes(pair, comparison, frames, case):
+        for change in _find_changes(pair, comparison, frames, case):
             group = groups.setdefault(change.identity, _Group(change))
             group.names[change.name] = None
             group.cases[case.name] = None
@@ -72,23 +72,23 @@ def compare_descriptions(pair: FilePair) -> None:
             if may_change_collisions(comparison.differences):
                 disabled = disabled_collisions(pair.versions.new.root)
                 collisions = list(collision_changes(old, new, comparison.links, disabled))
-    pair.changes += merged(group.change(pair.cases) for group in _united(groups.values()))
+    pair.changes += merge_changes(group.change(pair.cases) for group in _merge_groups(groups.values()))
     pair.changes += collisions
 
 
-def _cases(pair: FilePair, groups: Sized) -> Iterator[Case]:
-    """Yield the cases of callers and, if they show no change, those with the opposites of boolean arguments."""
+def _cases_to_compare(pair: FilePair, groups: Sized) -> Iterator[Case]:
+    """Yield the cases of callers and, if these show no change, cases with inverted boolean arguments."""
     compared = []
-    for case in cases(pair):
+    for case in find_cases(pair):
         compared.append(case)
         yield case
     if not groups:
-        yield from switched_cases(pair, compared)
+        yield from find_switched_cases(pair, compared)
 
 
 @dataclass
 class _Group:
-    """A change with its reasons, and the names of the links, joints and argument sets with which it occurs."""
+    """A change with its reasons, and the links, joints and argument sets in which it occurs."""
 
     first: Change
     names: dict[str, None] = field(default_factory=dict)
@@ -101,8 +101,8 @@ class _Group:
         return replace(self.first, cases=cases, reason=reason, other_names=tuple(self.names)[1:])
 
 
-def _united(groups: Iterable[_Group]) -> Iterable[_Group]:
-    """Return groups in which the same change in the files of several argument sets is one."""
+def _merge_groups(groups: Iterable[_Group]) -> Iterable[_Group]:
+    """Return the groups, with the same change in the files of several argument sets merged."""
     united: dict[Hashable, _Group] = {}
     for group in groups:
         key = group.first.effect, str(group.first.sentence), tuple(group.names)
@@ -118,7 +118,7 @@ def _united(groups: Iterable[_Group]) -> Iterable[_Group]:
 # --- changes of a robot ----------------------------------------------------------------------------------------------
 
 
-def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> Iterator[Change]:
+def _find_changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> Iterator[Change]:
     old, new, partial = case.old.robot, case.new.robot, case.partial
     if old is None or new is None:
         return
@@ -126,9 +126,9 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
     if has_other_root:
         yield _root_change(old, new, frames)
     added = added_topics(comparison.differences)
-    differences = with_replaced_plugins(comparison.differences)
+    differences = merge_replaced_plugins(comparison.differences)
     added_links = AddedLinks(differences, new)
-    for difference in with_joined_values(differences):
+    for difference in join_value_differences(differences):
         if added_links.is_in_line_of_link(difference):
             continue
         if partial is not None and not partial.is_certain(difference):
@@ -145,10 +145,10 @@ def _changes(pair: FilePair, comparison: Comparison, frames: SharedFrames, case:
         if difference.subject == "link" and difference.kind == "renamed":
             is_placed = partial is None or not partial.has_stand_ins
             text = _with_motion(text, frames.distance(difference.old or "") if is_placed else None)
-        yield Change(text, effect, reason, _mesh_location(pair, case, difference) or _location(pair, difference))
+        yield Change(text, effect, reason, _mesh_location(pair, case, difference) or _difference_location(pair, difference))
     if partial is None:
         links, joints = old.links.keys() - new.links.keys(), old.joints.keys() - new.joints.keys()
-        yield from left_names(new.extensions, links, joints, pair.location)
+        yield from find_left_names(new.extensions, links, joints, pair.location)
 
 
 def _root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:
@@ -164,7 +164,7 @@ def _root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:
 
 
 def _expression_reason(difference: Difference) -> Phrase | None:
-    """Return why it is breaking that a URDF file names a file by an expression, which only xacro evaluates."""
+    """Return the reason why an expression in a URDF file name is breaking: only xacro evaluates it."""
     places = difference.old_place, difference.new_place
     if difference.kind != "changed" or not difference.old or not difference.new or None in places:
         return None
@@ -176,7 +176,7 @@ def _expression_reason(difference: Difference) -> Phrase | None:
 
 
 def _is_expression_in_urdf(place: DifferenceLocation) -> bool:
-    """Return whether the value at a place in a file ``.urdf`` is written with ``$(find PACKAGE)``."""
+    """Return whether the value at a location in a ``.urdf`` file contains ``$(find PACKAGE)``."""
     path = Path(place.span.file)
     if path.suffix != ".urdf":
         return False
@@ -185,12 +185,12 @@ def _is_expression_in_urdf(place: DifferenceLocation) -> bool:
 
 
 def _with_motion(text: Phrase, distance: float | None) -> Phrase:
-    """Return the sentence about a renamed link with the distance by which it has moved, if it has."""
+    """Return the sentence about a renamed link, with the distance in m if it moved."""
     return text if distance is None else phrase("{change} (moved by {distance:.4g} m)", change=text, distance=distance)
 
 
 def _mesh_location(pair: FilePair, case: Case, difference: Difference) -> Location | None:
-    """Return the mesh file of a difference between the contents of a mesh, which several robots may use."""
+    """Return the location of the mesh file if the contents of a mesh differ; None for other differences."""
     _, is_mesh, address = difference.property.partition(" mesh ")
     if not is_mesh or difference.subject != "link":
         return None
@@ -198,8 +198,8 @@ def _mesh_location(pair: FilePair, case: Case, difference: Difference) -> Locati
     return None if path is None else Location(path, 1, 1)
 
 
-def _location(pair: FilePair, difference: Difference) -> Location | None:
-    """Return where the new value is, or else the old value; None for files outside the repository."""
+def _difference_location(pair: FilePair, difference: Difference) -> Location | None:
+    """Return the location of the new value, or else of the old value; None for files outside the repository."""
     new, old = difference.new_place, difference.old_place
     return (pair.location(new.span) if new else None) or (pair.location(old.span, is_old=True) if old else None)
 
@@ -224,10 +224,10 @@ def sentence_of_difference(difference: Difference) -> Phrase:
     if difference.element is not None:
         contents = _element_contents(difference.element)
         if difference.kind == "changed":
-            return _presence(difference, contents)
+            return _presence_text(difference, contents)
         return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
     if difference.kind == "changed" and (difference.old is None or difference.new is None):
-        return _presence(difference, _known_value(difference))
+        return _presence_text(difference, _known_value(difference))
     if difference.old is None or difference.new is None or not difference.property.endswith(("xyz", "rpy")):
         return text
     try:
@@ -244,19 +244,19 @@ def sentence_of_difference(difference: Difference) -> Phrase:
 
 
 def _element_contents(element: Element) -> Phrase | None:
-    """Return the attributes of an element without its name, and the values in it; None if there are none."""
+    """Return the attributes of an element except its name, and its values; None if there are none."""
     parts = [as_phrase(own_content(element, (_REFERENCE,))), contents_text(element)]
     return joined(list(filter(None, parts))) if any(parts) else None
 
 
 def _known_value(difference: Difference) -> str:
-    """Return the value that one version has, with its unit."""
+    """Return the only value of a difference, with its unit."""
     value = difference.old if difference.new is None else _without_details(difference)
     return " ".join(filter(None, (value, difference.unit)))
 
 
-def _presence(difference: Difference, value: str | None) -> Phrase:
-    """Return in one line that a property or a part was added or removed, with its value."""
+def _presence_text(difference: Difference, value: str | None) -> Phrase:
+    """Return the line about an added or removed property or part, with its value."""
     subject, name, part = term(difference.subject), difference.name, difference.property
     if difference.new is not None and not value:
         return phrase("{subject} '{name}': {property} added", subject=subject, name=name, property=part)
@@ -272,7 +272,7 @@ def _presence(difference: Difference, value: str | None) -> Phrase:
 
 
 def _without_details(difference: Difference) -> str:
-    """Return the values of an added part; of an inertial, those without products of inertia and axes of the link."""
+    """Return the values of an added part. An inertial is shown without products of inertia and axes."""
     parts = (difference.new or "").split(", ")
     if difference.property == "inertial":
         parts = [part for part in parts if not part.startswith(_DETAILS_OF_INERTIAL)]

@@ -1,4 +1,4 @@
-"""Quantities of a whole robot, in two versions."""
+"""Compare quantities of a whole robot."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from linkwright.geometry.shapes import Box, Capsule, Placement, SimpleShape, Sph
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
-from linkwright.review.frames import matrix
+from linkwright.review.frames import to_matrix
 from linkwright.review.quantities import figure_of
-from linkwright.review.robots.reach import Chain, have_equal_distances, reaches
+from linkwright.review.robots.reach import Chain, have_equal_distances, compare_reaches
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
 _REACH_SAMPLES = 2_000
 _MIN_CHAIN = 3
-"""The minimum number of moving joints of a chain whose end has a reach."""
+"""The minimum number of moving joints of a chain whose reach is compared."""
 _MAX_CHAINS = 4
-"""The number of chains whose reach is compared; the fingers of a hand would fill the report."""
+"""The maximum number of chains whose reach is compared. The fingers of a hand would fill the report."""
 _UNLIMITED = np.pi
-"""The positions of a continuous joint that are sampled, in rad, on both sides of zero."""
+"""The largest sampled position of a continuous joint in rad, on both sides of zero."""
 
 Array = NDArray[np.float64]
 
@@ -44,22 +44,22 @@ def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
         for link in common:
             if have_equal_distances(old_chains[link], new_chains[link], samples[0]):
                 continue
-            reach = reaches(old_chains[link], new_chains[link], *samples)
+            reach = compare_reaches(old_chains[link], new_chains[link], *samples)
             yield from figure_of(phrase("reach of '{link}'", link=link), "m", *reach)
 
 
 class RobotMeasures:
-    """The quantities of a robot with all joints at the positions at which joint_state_publisher starts.
+    """The quantities of a robot with all joints at the initial positions of joint_state_publisher.
 
     Args:
-        robot: the robot.
+        robot: the robot with its links and joints.
         model: the description of the robot.
         root: the frame of the root link in the frame of the figures.
         frames: the frames of the links in the frame of the figures.
         old_joints: the old names of renamed joints, by new name.
 
     Attributes:
-        robot: the robot.
+        robot: the robot with its links and joints.
         meshes: the meshes of the robot.
         frames: the frames of the links, shape (4, 4) each.
         link_names: the links in the order of the frames of `sampled_frames`.
@@ -75,8 +75,8 @@ class RobotMeasures:
     ) -> None:
         self.robot = robot
         self._old_joints = old_joints or {}
-        self._root = matrix(root)
-        self.frames = {name: matrix(frame) for name, frame in frames.items()}
+        self._root = to_matrix(root)
+        self.frames = {name: to_matrix(frame) for name, frame in frames.items()}
         self.meshes = MeshLibrary(model.finder, model.path.parent)
         self._tree = KinematicTree(robot)
         self.link_names = self._tree.link_names
@@ -171,7 +171,7 @@ class RobotMeasures:
         return self.frames_at(self.sampled_positions(count))
 
     def sampled_positions(self, count: int) -> Array:
-        """Return positions within the limits, which depend only on the old names and the limits of the joints.
+        """Return positions within the limits. They depend only on the old names and the limits of the joints.
 
         Returns:
             Positions in rad or m, shape (count, joints).

@@ -1,4 +1,4 @@
-"""The changes of the inertial of a link, or of the limits of a joint, in one line."""
+"""Join the changes of the inertial of a link, or of the limits of a joint, in one line."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from itertools import groupby
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, phrase, term
 
-_BLOCKS = ("inertial", "limit")
-"""The properties whose values are joined: those of ``<inertial>`` and those of ``<limit>``."""
+_BLOCK_TAGS = ("inertial", "limit")
+"""The elements whose values are joined: ``<inertial>`` and ``<limit>``."""
 
 
 @dataclass(frozen=True, slots=True)
 class JoinedDifferences(Difference):
-    """The differences of several values of a block. The locations are those of the first one.
+    """The differences of several values of a block. The location is that of the first difference.
 
     Attributes:
-        values: the differences of the values, which both versions have.
+        values: the differences of values that both versions have.
     """
 
     values: tuple[Difference, ...] = ()
@@ -34,8 +34,8 @@ class JoinedDifferences(Difference):
         )
 
 
-def with_joined_values(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield differences in which those of the inertial of a link, or of the limits of a joint, are one."""
+def join_value_differences(differences: Iterable[Difference]) -> Iterator[Difference]:
+    """Yield the differences, with changes of an inertial, or of the limits of a joint, joined into one."""
     for key, group in groupby(differences, _block_of):
         values = tuple(group)
         if key is None or len(values) == 1:
@@ -54,9 +54,9 @@ def with_joined_values(differences: Iterable[Difference]) -> Iterator[Difference
 
 
 def _block_of(difference: Difference) -> tuple[str, str] | None:
-    """Return the link or joint and the block of a changed value that can be joined; None for other differences."""
+    """Return the link or joint and the block of a changed value; None if the value cannot be joined."""
     block = difference.property.partition(" ")[0]
-    is_value = difference.kind == "changed" and block in _BLOCKS and block != difference.property
+    is_value = difference.kind == "changed" and block in _BLOCK_TAGS and block != difference.property
     return (difference.name, block) if is_value and difference.old and difference.new else None
 
 

@@ -1,4 +1,4 @@
-"""Descriptions that only one version has or can read: the parts of the robot."""
+"""Summarize robots that only one version has or can read."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from linkwright.review.versions import Version
 from linkwright.urdf import Robot
 
 _MAX_NAMES = 40
-"""The number of links, joints or plugins that the line about a robot names."""
+"""The maximum number of links, joints or plugins in the line about a robot."""
 
 
 def read_lone_robot(version: Version, path: str) -> tuple[Model, Robot] | None:
-    """Return a description of one version with the values of its first caller, or None if it cannot be read."""
+    """Return the model and robot of a description with the values of its first caller, or None if unreadable."""
     sets: Sequence[ArgumentSet] = version.checker().argument_sets(version.file(path), ())
     for arguments in (*sets[:1], ArgumentSet({})):
         model = version.model(path, arguments.values)
@@ -33,10 +33,10 @@ def read_lone_robot(version: Version, path: str) -> tuple[Model, Robot] | None:
 
 def robot_text(robot: Robot) -> Phrase:
     """Return the parts of a robot in one line."""
-    return phrase("robot '{name}': {parts}", name=robot.name, parts=joined(_parts(robot)))
+    return phrase("robot '{name}': {parts}", name=robot.name, parts=joined(_part_counts(robot)))
 
 
-def _parts(robot: Robot) -> Iterator[Phrase]:
+def _part_counts(robot: Robot) -> Iterator[Phrase]:
     moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES]
     hardware = [element for element in robot.extensions if element.tag == ROS2_CONTROL]
     plugins = [plugin_name(plugin) for element in robot.extensions for plugin in plugins_of(element)]

@@ -1,6 +1,6 @@
-"""Robots without the files and packages that neither version has.
+"""Read robots without the files and packages that neither version has.
 
-On a computer without ROS, packages of sensors are often missing. The rest of the robot is still compared.
+Without ROS, sensor packages are often missing. The rest of the robot is still compared.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from linkwright.xacro.session import Inputs
 from linkwright.xmltree import Element
 
 _KEPT_AS_WRITTEN = frozenset({"name", "link", "joint", "filename", "type"})
-"""Attributes that may contain any text, so that an unevaluated one is compared as it is written."""
+"""Attributes that may contain any text, so that unevaluated values are compared as written."""
 _CALL = "xacro:"
 
 
@@ -27,10 +27,10 @@ class PartialRobot:
     """A robot without the missing files and packages.
 
     Attributes:
-        description: the description.
+        description: the expanded description.
         omissions: the missing packages and files, and the parts that need them.
-        stand_ins: the names of links and joints that replace missing ones, so that the rest is one tree.
-        unevaluated: the tag and the name of links, joints and materials with values that need missing names.
+        stand_ins: the names of links and joints that replace missing links and joints to connect the tree.
+        unevaluated: the tags and names of links, joints and materials with values that could not be evaluated.
     """
 
     description: Description
@@ -40,7 +40,7 @@ class PartialRobot:
 
     @property
     def error(self) -> Diagnostic | None:
-        """The first reason why the description has no robot; None if it has one."""
+        """The first error that prevents reading the robot; None if it was read."""
         if self.description.robot is not None:
             return None
         errors = (item for item in self.description.diagnostics if item.severity is Severity.ERROR)
@@ -56,7 +56,7 @@ class PartialPair:
 
     @property
     def has_stand_ins(self) -> bool:
-        """Whether links are missing, so that the places of others are unknown."""
+        """Whether links are missing, so that the poses of other links are unknown."""
         return bool(self.old.stand_ins | self.new.stand_ins)
 
     @property
@@ -69,25 +69,25 @@ class PartialPair:
         return not self.has_stand_ins and self.has_same_omissions()
 
     def has_same_omissions(self) -> bool:
-        """Return whether the same is left out of both versions."""
-        return not _has_more(self.old, self.new) and not _has_more(self.new, self.old)
+        """Return whether both versions omit the same parts."""
+        return not _has_more_omissions(self.old, self.new) and not _has_more_omissions(self.new, self.old)
 
     def is_certain(self, difference: Difference) -> bool:
-        """Return whether a difference cannot be due to what is left out."""
+        """Return whether a difference cannot be due to omitted parts."""
         if difference.subject == "extension" and difference.name.startswith(_CALL):
             return True
         names = {difference.name, difference.old or "" if difference.kind == "renamed" else ""}
         if difference.subject in ("link", "joint") and names & (self.old.stand_ins | self.new.stand_ins):
             return False
         if difference.kind == "added":
-            return not _has_more(self.old, self.new)
+            return not _has_more_omissions(self.old, self.new)
         if difference.kind in ("removed", "renamed"):
-            return not _has_more(self.new, self.old)
+            return not _has_more_omissions(self.new, self.old)
         return (difference.subject, difference.name) not in self.old.unevaluated | self.new.unevaluated
 
 
 def read_partial_robot(model: Model) -> PartialRobot | None:
-    """Return a robot without missing files and packages, or None if it cannot be expanded without them either."""
+    """Return a robot without missing files and packages, or None if it cannot be expanded without them."""
     try:
         expansion, omissions = expand_with_omissions(Inputs(str(model.path), model.values), model.finder)
     except LinkwrightError:
@@ -98,8 +98,8 @@ def read_partial_robot(model: Model) -> PartialRobot | None:
     return PartialRobot(Description.of_expansion(str(model.path), expansion), omissions, stand_ins, unevaluated)
 
 
-def _has_more(one: PartialRobot, other: PartialRobot) -> bool:
-    """Return whether more is left out of one version than of the other, which may be why parts are absent in it."""
+def _has_more_omissions(one: PartialRobot, other: PartialRobot) -> bool:
+    """Return whether one version has more omissions than the other, which may explain absent parts."""
     return (
         one.omissions.packages > other.omissions.packages
         or len(one.omissions.files) > len(other.omissions.files)
@@ -109,9 +109,9 @@ def _has_more(one: PartialRobot, other: PartialRobot) -> bool:
 
 
 def _drop_unevaluated(root: Element) -> Iterator[tuple[str, str]]:
-    """Remove unevaluated numbers from links, joints and materials, and yield the tags and names of these.
+    """Remove unevaluated numbers from links, joints and materials, and yield the tags and names of these elements.
 
-    Everywhere else, unevaluated texts stay, and are compared as they are written.
+    Unevaluated texts elsewhere remain, and are compared as written.
     """
     root.attributes.pop(UNEVALUATED, None)
     for child in root.elements():
@@ -161,7 +161,7 @@ def _root_of(link: str, parents: Mapping[str, str]) -> str:
 
 
 def missing_names(pair: PartialPair, old: Model, new: Model) -> list[str]:
-    """Return the names of the packages and files that are left out because they are not found.
+    """Return the names of the packages and files that are omitted because they are not found.
 
     The list is empty if nothing is missing, or if one of the versions has something that the other version needs.
     """

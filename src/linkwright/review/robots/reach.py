@@ -1,4 +1,4 @@
-"""The reach of chains: the largest distance of their ends from the origin within the limits of the joints."""
+"""Compute the reach of chains: the largest distance of the end from the origin within the joint limits."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-_FEW = 64
-"""The number of positions for which chains are compared before their reach is searched."""
-_EQUAL = 1e-9
+_COMPARED_POSITIONS = 64
+"""The number of positions at which chains are compared before the search for their reach."""
+_MAX_EQUAL_DISTANCE_M = 1e-9
 """The maximum difference in m of equal distances."""
 _STARTS = 8
 """The number of sampled configurations that are the starting points of a search."""
@@ -29,7 +29,7 @@ class Chain:
     Attributes:
         names: the joints, in the order of positions.
         moving: the indexes of the joints that move the end of the chain.
-        turns: whether each joint turns; the others slide.
+        turns: whether each joint is revolute; the others are prismatic.
         low: the lower limits, shape (joints,).
         high: the upper limits, shape (joints,).
         distances: a function that returns the distances of the end in m, shape (count,), for positions of shape
@@ -46,8 +46,8 @@ class Chain:
     def farthest(self, samples: Array) -> tuple[float, Array]:
         """Return the largest distance of the end in m that a search finds, with its positions.
 
-        One joint after the other is moved to its best position. For a joint that turns, the squared distance is a
-        sine of its position; for one that slides, the best position is one of its limits.
+        One joint after the other is moved to its best position. For a revolute joint, the squared distance is a
+        sine of its position; for a prismatic joint, the best position is one of its limits.
 
         Args:
             samples: the positions from which the search can start, shape (count, joints).
@@ -77,7 +77,7 @@ class Chain:
             positions[is_better], distances[is_better] = moved[is_better], moved_distances[is_better]
 
     def _peaks(self, positions: Array, joint: int) -> Array:
-        """Return the positions of a revolute joint with the largest distances, from three distances of each."""
+        """Return the positions of a revolute joint with the largest distance, from three samples per configuration."""
         squares = []
         for step in range(3):
             turned = positions.copy()
@@ -98,7 +98,7 @@ class Chain:
 
 
 def have_equal_distances(old: Chain, new: Chain, samples: Array) -> bool:
-    """Return whether the ends of two chains with the same limits are equally far at the first of many positions.
+    """Return whether two chains with equal limits have equal distances at the first sampled positions.
 
     Such chains have the same reach.
     """
@@ -106,14 +106,14 @@ def have_equal_distances(old: Chain, new: Chain, samples: Array) -> bool:
         return False
     if not (np.array_equal(old.low, new.low) and np.array_equal(old.high, new.high)):
         return False
-    first = samples[:_FEW]
-    return np.allclose(old.distances(first), new.distances(first), rtol=0.0, atol=_EQUAL)
+    first = samples[:_COMPARED_POSITIONS]
+    return np.allclose(old.distances(first), new.distances(first), rtol=0.0, atol=_MAX_EQUAL_DISTANCE_M)
 
 
-def reaches(old: Chain, new: Chain, old_samples: Array, new_samples: Array) -> tuple[float, float]:
+def compare_reaches(old: Chain, new: Chain, old_samples: Array, new_samples: Array) -> tuple[float, float]:
     """Return the reach of a chain in two robots in m.
 
-    The search in each robot also starts from the best positions of the other one. Without that, the reach could seem to
+    The search in each robot also starts from the best positions of the other robot. Otherwise the reach could seem to
     grow with tighter limits, because the search ended elsewhere.
     """
     sides = (old, old_samples), (new, new_samples)

@@ -1,4 +1,4 @@
-"""The comparison of semantic descriptions in xacro, expanded with the defaults of their arguments."""
+"""Compare semantic descriptions in xacro, expanded with the defaults of their arguments."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DEFINITIONS = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:i
 
 
 def semantic_files(version: Version) -> set[str]:
-    """Return the paths of the semantic descriptions in xacro that contain more than definitions for other files."""
+    """Return the paths of the semantic descriptions in xacro that are more than definitions for other files."""
     files, _ = walk(version.root, (SUFFIX,))
     paths = (version.relative(file) for file in files if _is_complete(file))
     return {path for path in paths if path is not None}
@@ -28,11 +28,11 @@ def semantic_files(version: Version) -> set[str]:
 def compare_expanded_semantics(pair: FilePair) -> None:
     """Compare two versions of a semantic description in xacro.
 
-    If neither version can be expanded, such as without a package of another repository, nothing is added: the files are
-    then compared as they are written.
+    If neither version can be expanded, for example because of a missing package, nothing is reported: the files are
+    then compared as written.
     """
     old, new = (
-        _expanded(version, path)
+        _expand(version, path)
         for version, path in ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
     )
     if isinstance(old, Description) and isinstance(new, Description):
@@ -50,7 +50,7 @@ def _is_complete(file: Path) -> bool:
     return any(element.tag not in _DEFINITIONS for element in root.elements())
 
 
-def _expanded(version: Version, path: str) -> Description | LinkwrightError:
+def _expand(version: Version, path: str) -> Description | LinkwrightError:
     file = version.file(path)
     try:
         return examine(file, packages=version.finder(file.parent))

@@ -1,1 +1,1 @@
-"""The comparison of the sources of nodes: what they offer to other programs, read without running them."""
+"""Compare the sources of nodes: the names that they offer to other programs, read without running them."""

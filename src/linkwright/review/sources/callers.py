@@ -1,4 +1,4 @@
-"""The Python files that still import or call functions that another module removed or changed."""
+"""Find Python files that still import or call functions that another module removed or changed."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.package_imports import PACKAGE_FILE
-from linkwright.review.sources.python import parsed_source
-from linkwright.review.sources.reading import readable_source
+from linkwright.review.sources.python import parse_source
+from linkwright.review.sources.reading import try_read_source
 from linkwright.review.sources.signatures import Signature, signature_of
 from linkwright.review.sources.undefined_names import bound_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -25,9 +25,9 @@ class _Module:
     """The names of a module.
 
     Attributes:
-        names: all names that it may have, besides those of its files.
+        names: all names that it may have, besides the names of its files.
         defined: the names of its functions and classes.
-        signatures: the parameters of these, if they are certain.
+        signatures: the parameters of these functions and classes, if they are certain.
         is_complete: whether it certainly has no other names.
     """
 
@@ -43,46 +43,46 @@ class _Lost:
 
     Attributes:
         path: the path of the module.
-        removed: the functions and classes that are gone.
-        changed: the old and new parameters of others.
-        is_gone: whether the whole module is gone.
+        removed: the names of the removed functions and classes.
+        changed: the old and new parameters of changed functions and classes.
+        is_removed: whether the whole module was removed.
     """
 
     path: str
     removed: frozenset[str] = frozenset()
     changed: Mapping[str, tuple[Signature, Signature]] = field(default_factory=dict)
-    is_gone: bool = False
+    is_removed: bool = False
 
 
 def broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the files that import a name which their module no longer has, or call it with arguments that do not fit.
+    """Yield the files that import a removed name, or call a function with unsuitable arguments.
 
-    Modules are those of the repository, and are found if only one file can be meant. Methods of objects are not
+    Only modules of the repository that match exactly one file are searched. Methods of objects are not
     followed.
     """
-    lost = [each for file in changed_files if (each := _lost(versions, file)) is not None]
+    lost = [module for file in changed_files if (module := _find_lost(versions, file)) is not None]
     if not lost:
         return
-    files = _Files(versions.new, [each.path for each in lost if each.is_gone])
+    files = _Files(versions.new, [module.path for module in lost if module.is_removed])
     for path in files.paths:
         text = versions.new.text(path)
-        candidates = [each for each in lost if _module_word(each.path) in text and _has_any(each, text)]
-        tree = _tree(versions.new, path) if candidates else None
+        candidates = [module for module in lost if _module_word(module.path) in text and _has_any(module, text)]
+        tree = _parse(versions.new, path) if candidates else None
         if tree is None:
             continue
-        for each in candidates:
-            if each.path != path:
-                yield from ((path, change) for change in _Caller(files, path, tree, each).changes())
+        for module in candidates:
+            if module.path != path:
+                yield from ((path, change) for change in _Caller(files, path, tree, module).changes())
 
 
-def _lost(versions: Versions, file: ChangedFile) -> _Lost | None:
+def _find_lost(versions: Versions, file: ChangedFile) -> _Lost | None:
     """Return the functions and classes that a changed module removed or changed, or None if there are none."""
     path = file.old_path
     if path is None or not path.endswith(PYTHON_SUFFIX) or file.is_submodule:
         return None
     if path != file.new_path:
-        return _Lost(path, is_gone=True)
-    old, new = (_module(version, path) for version in (versions.old, versions.new))
+        return _Lost(path, is_removed=True)
+    old, new = (_read_module(version, path) for version in (versions.old, versions.new))
     if old is None or new is None:
         return None
     removed = old.defined - new.names if new.is_complete else frozenset[str]()
@@ -98,19 +98,19 @@ def _module_word(path: str) -> str:
 
 
 def _has_any(lost: _Lost, text: str) -> bool:
-    return lost.is_gone or any(name in text for name in (*lost.removed, *lost.changed))
+    return lost.is_removed or any(name in text for name in (*lost.removed, *lost.changed))
 
 
-def _tree(version: Version, path: str) -> ast.Module | None:
-    source: SourceText | None = readable_source(version.file(path))
+def _parse(version: Version, path: str) -> ast.Module | None:
+    source: SourceText | None = try_read_source(version.file(path))
     try:
-        return None if source is None else parsed_source(source).tree
+        return None if source is None else parse_source(source).tree
     except (SyntaxError, ValueError, RecursionError):
         return None
 
 
-def _module(version: Version, path: str) -> _Module | None:
-    tree = _tree(version, path)
+def _read_module(version: Version, path: str) -> _Module | None:
+    tree = _parse(version, path)
     if tree is None:
         return None
     bound = list(bound_names(tree))
@@ -126,24 +126,24 @@ def _module(version: Version, path: str) -> _Module | None:
 
 
 class _Files:
-    """The sources in Python of a version, except tests.
+    """The Python sources of a version, except tests.
 
     Args:
-        version: the version.
-        gone: the paths of modules that only the other version has.
+        version: the version of the repository.
+        removed: the paths of modules that only the other version has.
     """
 
-    def __init__(self, version: Version, gone: Sequence[str]) -> None:
+    def __init__(self, version: Version, removed: Sequence[str]) -> None:
         paths = version.paths((PYTHON_SUFFIX,))
         self.paths = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
-        self._gone = gone
+        self._gone = removed
 
     @cached_property
-    def _known(self) -> frozenset[str]:
+    def _all_paths(self) -> frozenset[str]:
         return frozenset((*self.paths, *self._gone))
 
     def module(self, path: str, name: str, level: int) -> str | None:
-        """Return the path of the module that a file imports, or None if several or none can be meant.
+        """Return the path of the module that a file imports, or None unless exactly one file matches.
 
         Args:
             path: the path of the file.
@@ -156,26 +156,26 @@ class _Files:
             parents = [folder, *folder.parents]
             places = [parents[level - 1] / part] if level <= len(parents) else []
             files = [f"{place}{end}" for place in places for end in (PYTHON_SUFFIX, f"/{PACKAGE_FILE}")]
-            return self._only(file for file in files if file in self._known)
+            return self._single_path(file for file in files if file in self._all_paths)
         beside = (folder / f"{part}{PYTHON_SUFFIX}").as_posix()
         if "/" not in part:
             return beside if beside in self.paths else None  # a module that is gone may be one of another package
         ends = (f"/{part}{PYTHON_SUFFIX}", f"/{part}/{PACKAGE_FILE}")
-        return self._only(file for file in self._known if f"/{file}".endswith(ends))
+        return self._single_path(file for file in self._all_paths if f"/{file}".endswith(ends))
 
     @staticmethod
-    def _only(paths: Iterable[str]) -> str | None:
+    def _single_path(paths: Iterable[str]) -> str | None:
         found = list(paths)
         return found[0] if len(found) == 1 else None
 
 
 class _Caller:
-    """Finds the imports and calls in a file that fail now.
+    """Finds the imports and calls of a file that fail in the new version.
 
     Args:
         files: the sources of the version.
         path: the path of the file.
-        tree: the file.
+        tree: the syntax tree of the file.
         lost: the functions and classes that the module removed or changed.
     """
 
@@ -186,33 +186,33 @@ class _Caller:
         self._lost = lost
         self._bound = list(bound_names(tree))
         guarded = (node for node in ast.walk(tree) if isinstance(node, ast.Try))
-        self._guarded = {id(each) for node in guarded for part in node.body for each in ast.walk(part)}
+        self._guarded = {id(inner) for node in guarded for part in node.body for inner in ast.walk(part)}
 
     def changes(self) -> Iterator[Change]:
-        """Yield a change for each name that the file still imports, and for each call that does not fit."""
+        """Yield a change for each removed name that the file still imports, and for each call that does not fit."""
         functions: dict[str, str] = {}  # the local name of a function, and its name in the module
         modules: set[str] = set()  # the local names of the module, with dots
         for node in ast.walk(self._tree):
             if isinstance(node, ast.Import):
                 lost = [alias for alias in node.names if self._is_lost_module(alias.name, 0)]
                 modules.update(alias.asname or alias.name for alias in lost)
-                if lost and self._lost.is_gone:
+                if lost and self._lost.is_removed:
                     yield from self._failing_import(node, None)
             elif isinstance(node, ast.ImportFrom):
                 for alias in node.names:
-                    yield from self._imported(node, alias, functions, modules)
-        yield from self._calls(functions, modules)
+                    yield from self._check_import(node, alias, functions, modules)
+        yield from self._check_calls(functions, modules)
 
-    def _imported(
+    def _check_import(
         self, node: ast.ImportFrom, alias: ast.alias, functions: dict[str, str], modules: set[str]
     ) -> Iterator[Change]:
-        """Yield a change if an imported name is gone, or else add its local name to one of the collections."""
+        """Yield a change if an imported name was removed, or else add its local name to one of the collections."""
         local = alias.asname or alias.name
         name = f"{node.module}.{alias.name}" if node.module else alias.name
         is_module = self._is_lost_module(name, node.level)
         if not is_module and not self._is_lost_module(node.module or "", node.level):
             return
-        if self._lost.is_gone:
+        if self._lost.is_removed:
             if is_module or alias is node.names[0]:
                 yield from self._failing_import(node, None)
         elif is_module:
@@ -223,7 +223,7 @@ class _Caller:
             functions[local] = alias.name
 
     def _failing_import(self, node: ast.stmt, name: str | None) -> Iterator[Change]:
-        """Yield the change that an import fails, unless the file expects that it may."""
+        """Yield the change that an import fails, unless the file handles the failure."""
         if id(node) in self._guarded:
             return
         text = phrase("imports '{file}', which does not exist any more", file=self._lost.path)
@@ -231,8 +231,8 @@ class _Caller:
             text = phrase("imports '{name}', which '{file}' no longer has", name=name, file=self._lost.path)
         yield self._change(text, phrase("the import fails"), node)
 
-    def _calls(self, functions: Mapping[str, str], modules: set[str]) -> Iterator[Change]:
-        """Yield a change for each call that only fits the old parameters, and for each call of a removed function."""
+    def _check_calls(self, functions: Mapping[str, str], modules: set[str]) -> Iterator[Change]:
+        """Yield a change for each call that fits only the old parameters, and for each call of a removed function."""
         for node in ast.walk(self._tree):
             if not isinstance(node, ast.Call):
                 continue

@@ -1,4 +1,4 @@
-"""The literals that differ between two versions of a source: numbers, texts and constants in equal statements."""
+"""Find literals that differ between two versions of a source: numbers, texts and constants."""
 
 from __future__ import annotations
 
@@ -12,39 +12,39 @@ from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_statements import cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python_statements import python_statements
-from linkwright.review.sources.reading import readable_source
-from linkwright.review.sources.statements import Difference, Literal, Statement, differences
+from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.statements import Difference, Literal, Statement, literal_differences
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
 _MAX_COMPARED = 4_000_000
-"""The number of pairs of statements up to which the statements of a function are compared."""
+"""The maximum number of pairs of statements of a compared function."""
 
 
-def value_changes(old_path: Path, new_path: Path, told: Sequence[str]) -> Iterator[tuple[Phrase, Span]]:
-    """Yield the functions with statements in which only literals differ, each with the place of the first one.
+def value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> Iterator[tuple[Phrase, Span]]:
+    """Yield the functions in which only literals of statements differ, each with the place of the first difference.
 
     Args:
         old_path: the old source.
         new_path: the new source.
-        told: the other lines about the source. Differences that these lines tell are left out.
+        reported: the other lines about the source. Differences in these lines are left out.
     """
-    old_source, new_source = readable_source(old_path), readable_source(new_path)
+    old_source, new_source = try_read_source(old_path), try_read_source(new_path)
     if old_source is None or new_source is None:
         return
     is_cpp = new_path.suffix in CPP_SUFFIXES
     try:
         old, new = (
-            cpp_statements(each.text) if is_cpp else python_statements(each) for each in (old_source, new_source)
+            cpp_statements(source.text) if is_cpp else python_statements(source) for source in (old_source, new_source)
         )
     except (ValueError, SyntaxError, RecursionError):
         return
     for name, statements in new.items():
         items = [
             item
-            for pair in _pairs(old.get(name, []), statements)
-            for item in differences(*pair)
-            if not _is_told(item, told) and not _is_renamed(item, old_source.text, new_source.text)
+            for pair in _pair_statements(old.get(name, []), statements)
+            for item in literal_differences(*pair)
+            if not _is_reported(item, reported) and not _is_renamed(item, old_source.text, new_source.text)
         ]
         if items:
             texts = joined_first(dict.fromkeys(item.text for item in items), MAX_NAMES)
@@ -54,10 +54,10 @@ def value_changes(old_path: Path, new_path: Path, told: Sequence[str]) -> Iterat
             yield text, new_source.span(items[0].token.start, items[0].token.end)
 
 
-def _pairs(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
-    """Yield the statements of a function in which only literals differ.
+def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
+    """Yield pairs of statements of a function that differ only in literals.
 
-    Between two equal statements, the statements of one shape are pairs if both versions have equally many.
+    Between equal statements, the statements of the same shape are paired if both versions have equally many.
     """
     if len(old) * len(new) > _MAX_COMPARED:
         return
@@ -73,39 +73,39 @@ def _pairs(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple
             after = [statement for statement in new[new_start:new_end] if statement.shape == shape]
             pairs = list(zip(before, after, strict=False))
             if len(before) == len(after) and not _are_reordered(pairs):
-                yield from (pair for pair in pairs if _is_same(*pair))
+                yield from (pair for pair in pairs if _are_versions(*pair))
 
 
-def _changed(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:
+def _changed_literals(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:
     return [pair for pair in zip(old.literals, new.literals, strict=True) if pair[0].differs_from(pair[1])]
 
 
 def _are_reordered(pairs: Sequence[tuple[Statement, Statement]]) -> bool:
-    """Return whether one literal loses a text and another literal gains it."""
-    changed = [pair for statements in pairs for pair in _changed(*statements)]
-    gone, come = ({pair[side].value for pair in changed if pair[side].is_text} for side in (0, 1))
-    return not gone.isdisjoint(come)
+    """Return whether a text only moves from one literal to another."""
+    changed = [pair for statements in pairs for pair in _changed_literals(*statements)]
+    removed, added = ({pair[side].value for pair in changed if pair[side].is_text} for side in (0, 1))
+    return not removed.isdisjoint(added)
 
 
-def _is_same(old: Statement, new: Statement) -> bool:
-    """Return whether two statements of one shape are probably the same one, with other literals."""
-    changed = _changed(old, new)
+def _are_versions(old: Statement, new: Statement) -> bool:
+    """Return whether two statements of the same shape are probably versions of one statement."""
+    changed = _changed_literals(old, new)
     has_texts = any(literal.is_text for pair in changed for literal in pair)
     return bool(changed) and (len(old.literals) == 1 or not has_texts or 2 * len(changed) <= len(old.literals))
 
 
-def _is_told(item: Difference, told: Sequence[str]) -> bool:
-    """Return whether other lines already tell that a literal is replaced by another one."""
+def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
+    """Return whether other lines already report the replacement of a literal."""
     old, new = (text.strip("\"'") for text in (item.old, item.new))
-    for line in told:
+    for line in reported:
         before, arrow, after = line.partition(" -> ")
         if arrow and _has_word(before, old) and _has_word(after, new):
             return True
     if item.new.endswith(("]", ")", "}")):
         texts = set(_QUOTED.findall(item.old)) ^ set(_QUOTED.findall(item.new))
-        return bool(texts) and all(any(_has_word(line, text[1:-1], "") for line in told) for text in texts)
+        return bool(texts) and all(any(_has_word(line, text[1:-1], "") for line in reported) for text in texts)
     is_text = item.new.endswith(("'", '"'))
-    return is_text and all(any(f"'{text}'" in line for line in told) for text in (old, new))
+    return is_text and all(any(f"'{text}'" in line for line in reported) for text in (old, new))
 
 
 def _has_word(line: str, word: str, joiner: str = ".") -> bool:
@@ -113,16 +113,16 @@ def _has_word(line: str, word: str, joiner: str = ".") -> bool:
 
 
 def _is_renamed(item: Difference, old_text: str, new_text: str) -> bool:
-    """Return whether both literals are one constant of the source, under another name."""
+    """Return whether both literals are the same constant of the source under different names."""
     if re.fullmatch(r"\w+", item.old) is None or re.fullmatch(r"\w+", item.new) is None:
         return False
     return (
-        _has_word(_defined(old_text), item.old)
+        _has_word(_defined_names(old_text), item.old)
         and not _has_word(new_text, item.old)
-        and (_has_word(_defined(new_text), item.new) and not _has_word(old_text, item.new))
+        and (_has_word(_defined_names(new_text), item.new) and not _has_word(old_text, item.new))
     )
 
 
-def _defined(text: str) -> str:
+def _defined_names(text: str) -> str:
     """Return the names of the constants that a source defines."""
     return " ".join(match[1] or match[2] for match in _DEFINITION.finditer(text))

@@ -1,4 +1,4 @@
-"""The code of a source by function, in a form without layout, comments, docstrings and outputs."""
+"""Normalize the code of a source by function, without layout, comments, docstrings and output."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from typing import NamedTuple
 from linkwright.diagnostics import SourceText
 from linkwright.review.sources.cpp_statements import is_output, read_cpp_blocks
 from linkwright.review.sources.names import CPP_SUFFIXES
-from linkwright.review.sources.python import parsed_source
+from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.python_statements import blocks_of, called_names
-from linkwright.review.sources.statements import normal_number
+from linkwright.review.sources.statements import normalize_number
 from linkwright.review.sources.tokens import Token, TokenKind
 
 _PRINTING = re.compile(r"p?print|log\w*|debug|info|warn|warning|error|critical|exception|fatal|echo", re.IGNORECASE)
@@ -26,10 +26,10 @@ _BRANCHES = frozenset({"else", "do", "try"})
 
 
 class Part(NamedTuple):
-    """A statement, or the head of one with statements in it.
+    """A statement, or the head of a compound statement.
 
     Attributes:
-        text: the code as it is compared.
+        text: the normalized code.
         first: the number of its first line.
         last: the number of its last line.
     """
@@ -44,9 +44,9 @@ class Code:
     """The code of a source.
 
     Attributes:
-        functions: the statements of each function, by its name with that of its class; the first one is the head.
-        others: the statements of each class outside of its functions; those outside of classes have no name.
-        imports: the imports of a source in Python.
+        functions: the statements of each function, by qualified name. The first statement is the head.
+        others: the statements outside of functions by class; statements outside of classes have an empty name.
+        imports: the imports of a Python source.
     """
 
     functions: dict[str, list[Part]] = field(default_factory=dict)
@@ -59,12 +59,12 @@ class Code:
 
 
 def read_code(source: SourceText) -> Code:
-    """Return the code of a source in Python or C++; nothing for one that cannot be read with certainty."""
+    """Return the code of a Python or C++ source; empty if it cannot be read with certainty."""
     try:
         if PurePosixPath(source.name).suffix in CPP_SUFFIXES:
             return _read_cpp(source)
         code = Code()
-        tree = parsed_source(source).tree
+        tree = parse_source(source).tree
         imports = (node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom)))
         code.imports = [_python_part(node, "") for node in imports]
         _read_python(tree.body, "", code)
@@ -77,7 +77,7 @@ def read_code(source: SourceText) -> Code:
 
 
 def _read_python(body: Sequence[ast.stmt], scope: str, code: Code) -> None:
-    """Add the code of a module or class."""
+    """Add the code of a module or class to `code`."""
     for node in body:
         if isinstance(node, ast.ClassDef):
             name = f"{scope}.{node.name}".lstrip(".")
@@ -91,7 +91,7 @@ def _read_python(body: Sequence[ast.stmt], scope: str, code: Code) -> None:
 
 
 def _python_parts(body: Sequence[ast.stmt], indent: str) -> Iterator[Part]:
-    """Yield the statements of a block, each before those in it."""
+    """Yield the statements of a block in depth-first order."""
     for node in body:
         if _is_skipped(node):
             continue
@@ -101,15 +101,15 @@ def _python_parts(body: Sequence[ast.stmt], indent: str) -> Iterator[Part]:
 
 
 def _python_part(node: ast.stmt, indent: str) -> Part:
-    """Return a statement without annotations, without messages of errors and without the statements in it."""
+    """Return a statement without annotations, error messages and nested statements."""
     inner = blocks_of(node)
-    first = min([node.lineno, *(each.lineno for each in getattr(node, "decorator_list", []))])
+    first = min([node.lineno, *(decorator.lineno for decorator in getattr(node, "decorator_list", []))])
     last = inner[0][0].lineno - 1 if inner else node.end_lineno or node.lineno
-    return Part(indent + ast.unparse(_plain(node)), first, max(first, last))
+    return Part(indent + ast.unparse(_normalize(node)), first, max(first, last))
 
 
-def _plain(node: ast.stmt) -> ast.stmt:
-    """Return a statement as it is compared. The tree is changed."""
+def _normalize(node: ast.stmt) -> ast.stmt:
+    """Return a statement in normalized form. The syntax tree is changed."""
     if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
         return ast.Raise(node.exc.func, None)
     if isinstance(node, ast.Assert):
@@ -124,10 +124,10 @@ def _plain(node: ast.stmt) -> ast.stmt:
     fields.update((name, []) for name in ("orelse", "finalbody") if name in fields)
     fields["body"] = [ast.Pass()]
     if "handlers" in fields:
-        fields["handlers"] = [ast.ExceptHandler(each.type, None, [ast.Pass()]) for each in fields["handlers"]]
+        fields["handlers"] = [ast.ExceptHandler(handler.type, None, [ast.Pass()]) for handler in fields["handlers"]]
         fields["finalbody"] = [] if fields["handlers"] else [ast.Pass()]
     if "cases" in fields:
-        fields["cases"] = [ast.match_case(each.pattern, each.guard, [ast.Pass()]) for each in fields["cases"]]
+        fields["cases"] = [ast.match_case(case.pattern, case.guard, [ast.Pass()]) for case in fields["cases"]]
     return ast.copy_location(type(node)(**fields), node)
 
 
@@ -166,15 +166,15 @@ def _read_cpp(source: SourceText) -> Code:
         parts = [
             _cpp_part(tokens, starts)
             for statement in statements
-            for tokens in _split(statement)
+            for tokens in _split_unbraced(statement)
             if not is_output(tokens) or _has_throw(tokens)
         ]
         (code.functions if name in functions else code.others)[name] = parts
     return code
 
 
-def _split(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:
-    """Yield the statement behind a condition without braces, and then the condition, as if it had braces."""
+def _split_unbraced(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:
+    """Yield the body of a condition without braces, and then the condition, as if it had braces."""
     end = 0
     if tokens and tokens[0].text in _BRANCHES:
         end = 1
@@ -186,7 +186,7 @@ def _split(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:
                 end = index + 1
                 break
     if 0 < end < len(tokens):
-        yield from _split(tokens[end:])
+        yield from _split_unbraced(tokens[end:])
         yield tokens[:end]
     else:
         yield tokens
@@ -204,7 +204,7 @@ def _cpp_part(tokens: Sequence[Token], starts: Sequence[int]) -> Part:
 
 
 def _token_text(token: Token, *, has_message: bool) -> str:
-    """Return a token as it is compared: without the texts of errors, and with numbers in one form."""
+    """Return a token in normalized form: without error messages, with equal notation of numbers."""
     if token.kind is TokenKind.NUMBER:
-        return normal_number(token.text, is_divided=True)
+        return normalize_number(token.text, is_divided=True)
     return '""' if has_message and token.kind is TokenKind.TEXT else token.text

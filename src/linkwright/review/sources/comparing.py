@@ -1,4 +1,4 @@
-"""The comparison of the sources of nodes: topics, services, actions, parameters, frames, options and classes."""
+"""Compare the sources of nodes: topics, services, actions, parameters, frames, options and classes."""
 
 from __future__ import annotations
 
@@ -29,38 +29,38 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
-from linkwright.review.sources.package_imports import failing_imports, is_installed_module, is_installed_package
-from linkwright.review.sources.reading import is_program_text, read_source_names, readable_source
+from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
+from linkwright.review.sources.reading import is_program_text, read_source_names, try_read_source
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SKIPPED = frozenset({"setup.py", "conf.py"})
 _MAX_ARGUMENTS = 80
-"""The number of characters up to which the arguments of an added function or class are shown."""
+"""The maximum number of characters of shown arguments of an added function or class."""
 _MAX_FUNCTIONS = 3
-"""The number of functions of a file with other arguments up to which each has a line."""
+"""The maximum number of functions with changed arguments in a file that have lines of their own."""
 _UNITS = re.compile(
     r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
     r"[num]?s|Hz|from_seconds|float|int)\b"
 )
-_SIMILAR = 0.6
-"""The ratio of equal characters from which two names of the same kind are similar."""
+_MIN_SIMILARITY = 0.6
+"""The minimum ratio of equal characters of similar names of the same kind."""
 _MAX_COMPARED = 10_000
-"""The number of pairs of names up to which similar names are searched."""
+"""The maximum number of pairs of names among which similar names are searched."""
 _USED = (
     *(NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT),
     *(NameKind.ACTION, NameKind.ACTION_CLIENT),
 )
 """The kinds of names by which a node communicates."""
 _LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION)
-"""The kinds of which another source may have the same name for another thing."""
+"""The kinds whose names may mean another thing in another source."""
 
 
 def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
-    """Yield the changed sources of nodes in which names differ.
+    """Yield the changed sources of nodes whose names differ.
 
-    A name that only moves to another file is not a change. Of names that are expressions, only the expressions are
-    compared.
+    Moving a name to another file is not a change. Names that are expressions are compared by their
+    text.
     """
     files = [file for file in changed_files if _is_source(versions, file)]
     sides = (
@@ -89,8 +89,8 @@ class _Side:
     """The names in the changed sources of a version.
 
     Args:
-        version: the version.
-        paths: the paths of the sources; None for one that the version does not have.
+        version: the version of the repository.
+        paths: the paths of the sources; None for a source that the version lacks.
     """
 
     def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
@@ -105,28 +105,28 @@ class _Side:
     @cached_property
     def codes(self) -> Mapping[str, Code]:
         """The code of the changed sources, by path."""
-        sources = {path: readable_source(self.version.file(path)) for path in self._names}
+        sources = {path: try_read_source(self.version.file(path)) for path in self._names}
         return {path: read_code(source) for path, source in sources.items() if source is not None}
 
     def has_function(self, name: str, code: Code, path: str) -> bool:
         """Return whether another changed source has a function with the same name and code.
 
         Args:
-            name: the function with its class.
-            code: the code that has the function.
-            path: the path of the source that is not searched.
+            name: the qualified name of the function.
+            code: the code that contains the function.
+            path: the path of the source to skip.
         """
         short, body = re.split(r"\.|::", name)[-1], code.body(name)
         return any(
-            re.split(r"\.|::", each)[-1] == short and other.body(each) == body
+            re.split(r"\.|::", function)[-1] == short and other.body(function) == body
             for other_path, other in self.codes.items()
             if other_path != path
-            for each in other.functions
+            for function in other.functions
         )
 
     @cached_property
     def _known(self) -> frozenset[tuple[NameKind, str]]:
-        return frozenset((item.kind, _key(item)) for names in self._names.values() for item in names.names)
+        return frozenset((item.kind, _comparison_name(item)) for names in self._names.values() for item in names.names)
 
     @cached_property
     def _functions(self) -> frozenset[str]:
@@ -139,24 +139,28 @@ class _Side:
         return [(item.kind, item.type) for names in self._names.values() for item in names.expressions]
 
     def count(self, item: SourceName) -> int:
-        """Return how many names in changed sources are expressions for the same kind and type."""
+        """Return the number of expressions in changed sources with the same kind and type."""
         return self._expressions.count((item.kind, item.type))
 
     def lacks_in_changed(self, item: SourceName, path: str) -> bool:
-        """Return whether no changed source but one has a name, so that it has not moved from another to this one."""
+        """Return whether no changed source except this one has a name, so that the name has not moved."""
         others = (names for other, names in self._names.items() if other != path)
-        return not any((each.kind, _key(each)) == (item.kind, _key(item)) for names in others for each in names.names)
+        return not any(
+            (known.kind, _comparison_name(known)) == (item.kind, _comparison_name(item))
+            for names in others
+            for known in names.names
+        )
 
     def lacks(self, item: SourceName, path: str) -> bool:
         """Return whether neither a changed source nor another source of the same package has a name.
 
         Args:
-            item: the name.
+            item: the name to search for.
             path: the path of a source of the package.
         """
         if item.kind is NameKind.IMPORT:
             return True
-        if (item.kind, _key(item)) in self._known:
+        if (item.kind, _comparison_name(item)) in self._known:
             return False
         if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._functions:
             return False  # in a base class, for example
@@ -171,7 +175,7 @@ class _Side:
         return not any(text in content for content in self._other_texts(package) for text in texts)
 
     def package(self, path: str) -> str | None:
-        """Return the folder of the package of a file, or None if it is in none."""
+        """Return the folder of the package of a file, or None for a file outside of packages."""
         return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
 
     def _other_texts(self, package: str) -> list[str]:
@@ -186,7 +190,7 @@ class _Side:
         return is_part and path.as_posix() not in self._names
 
     def _generates(self, name: str, path: str) -> bool:
-        """Return whether a description of parameters beside a source, from which code is generated, has a parameter."""
+        """Return whether a parameter description beside a source, from which code is generated, has a parameter."""
         files = self.version.file(path).parent.glob("*.y*ml")
         return any(f"{name.rpartition('.')[2]}:" in file.read_text("utf-8", errors="replace") for file in files)
 
@@ -214,14 +218,14 @@ class _Pair:
         changes += self._undefined_changes(old_names, new_names)
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
-            told = [str(change.sentence) for change in changes]
-            values = value_changes(old_path, new_path, told)
+            reported = [str(change.sentence) for change in changes]
+            values = value_changes(old_path, new_path, reported)
             changes += [self._change(text, span, self.new, None) for text, span in values]
             changes += self._code_changes(self.file.old_path, self.file.new_path, changes)
         yield from changes
 
-    def _code_changes(self, old_path: str, new_path: str, told: Sequence[Change]) -> Iterator[Change]:
-        """Yield the functions whose code changes, if other lines do not tell it."""
+    def _code_changes(self, old_path: str, new_path: str, reported: Sequence[Change]) -> Iterator[Change]:
+        """Yield the functions whose code changes, unless other lines report it."""
         old, new = self.old.codes.get(old_path), self.new.codes.get(new_path)
         if not old or not new:
             return
@@ -230,13 +234,13 @@ class _Pair:
             side, path = (self.new, new_path) if code is old else (self.old, old_path)
             return side.has_function(name, code, path)
 
-        change = code_change(old, new, told, has_moved, self.new.names(new_path))
+        change = code_change(old, new, reported, has_moved, self.new.names(new_path))
         if change is not None:
             location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
             yield Change(change.text, location=location)
 
     def problems(self) -> Iterator[Problem]:
-        """Yield the reason why the names of one version are not known, if that of the other version are."""
+        """Yield the reason why the names of one version are unknown, if the names of the other version are known."""
         lines = [
             self.old.names(self.file.old_path).error_line,
             self.new.names(self.file.new_path).error_line,
@@ -252,7 +256,7 @@ class _Pair:
             )
 
     def lost_source(self) -> Iterator[Change]:
-        """Yield the change that only the old version can be parsed, unless other versions of Python may differ."""
+        """Yield the change that the new version cannot be parsed, unless another version of Python may parse it."""
         names = self.new.names(self.file.new_path)
         if names.error_line and names.is_error_certain:
             text = phrase("cannot be parsed any more")
@@ -260,17 +264,17 @@ class _Pair:
             yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
 
     def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        before = {_key(item): item for item in old_names.of(kind)}
-        after = {_key(item): item for item in new_names.of(kind)}
-        changed = [(item, *each) for name, item in after.items() if name in before
-                   for each in detail_changes(before[name], item)]  # fmt: skip
+        before = {_comparison_name(item): item for item in old_names.of_kind(kind)}
+        after = {_comparison_name(item): item for item in new_names.of_kind(kind)}
+        changed = [(item, *detail) for name, item in after.items() if name in before
+                   for detail in detail_changes(before[name], item)]  # fmt: skip
         yield from self._detail_changes(kind, changed, old_names)
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
         path = self.file.path
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
         is_lacking = self.old.lacks
-        if self.file.old_path is None and kind in _USED and any(new_names.of(NameKind.NODE)):
+        if self.file.old_path is None and kind in _USED and any(new_names.of_kind(NameKind.NODE)):
             is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
@@ -284,18 +288,22 @@ class _Pair:
                 return
             removed, added = _other_imports(removed, new_names), _other_imports(added, old_names)
         if kind is NameKind.FUNCTION and not path.endswith(PYTHON_SUFFIX):
-            classes = [{item.name for item in names.of(NameKind.CLASS)} for names in (old_names, new_names)]
+            classes = [{item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)]
             removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
             added = [item for item in added if _has_class(item, classes[0] & classes[1])]
         if kind is NameKind.FUNCTION and is_python:
             is_installed = is_installed_module(self.old.version, self.old.package(old_path), old_path)
             plain = old_names.plain_classes & new_names.plain_classes if is_installed else set()
-            removed = [item for item in removed if _is_of(item, plain)]
-            added = [item for item in added if _is_of(item, plain)]
-        for old_item, new_item in _renamed(removed, added):
-            text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
+            removed = [item for item in removed if _is_method_of(item, plain)]
+            added = [item for item in added if _is_method_of(item, plain)]
+        for old_item, new_item in _pair_renamed(removed, added):
+            text = phrase(
+                "{kind} {old} renamed to {new}", kind=kind.title, old=_name_text(old_item), new=_name_text(new_item)
+            )
             is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
-            reason = None if is_same else self._reason([old_item], old_names)  # tf takes both names for the same
+            reason = (
+                None if is_same else self._removal_reason([old_item], old_names)
+            )  # tf takes both names for the same
             yield self._change(text, new_item.span, self.new, reason)
             removed.remove(old_item)
             added.remove(new_item)
@@ -305,7 +313,7 @@ class _Pair:
     def _detail_changes(
         self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames
     ) -> Iterator[Change]:
-        """Yield the changes of names that both versions have; those of functions only if others can call them."""
+        """Yield the changes of names that both versions have. Functions count only if other files can call them."""
         is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
         is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
         if kind is NameKind.FUNCTION and not is_called:
@@ -318,7 +326,7 @@ class _Pair:
             yield self._change(text, item.span, self.new, reason if is_breaking else None)
 
     def _merged_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
-        """Return one change for many functions with other arguments."""
+        """Return one change for many functions whose arguments changed."""
         names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), MAX_NAMES)
         text = phrase("functions with other arguments: {names}", names=names)
         reason = next((reason for _, _, reason in changed if reason is not None), None)
@@ -329,7 +337,7 @@ class _Pair:
         return self._change(text, changed[0][0].span, self.new, reason)
 
     def _is_interface(self, path: str) -> bool:
-        """Return whether other packages can use what a file defines: it is a module, or an installed header."""
+        """Return whether other packages can use the definitions of a file: it is a module or an installed header."""
         package = self.old.package(path)
         if path.endswith(PYTHON_SUFFIX):
             return package is not None and (self.old.version.file(path).parent / "__init__.py").is_file()
@@ -341,14 +349,14 @@ class _Pair:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
         if added and (kind is not NameKind.FUNCTION or self.file.old_path is not None):
-            text = phrase("{kind} added: {names}", kind=kind.plural, names=_names(added))
+            text = phrase("{kind} added: {names}", kind=kind.plural, names=_names_text(added))
             reason = _required_reason(added) if self.file.old_path is not None else None
             yield self._change(text, added[0].span, self.new, reason)
         if removed:
-            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names(removed))
-            yield self._change(text, removed[0].span, self.old, self._reason(removed, old_names))
+            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names_text(removed))
+            yield self._change(text, removed[0].span, self.old, self._removal_reason(removed, old_names))
 
-    def _reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
+    def _removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self._is_interface(path):
             return None
@@ -359,39 +367,45 @@ class _Pair:
     def _expression_changes(
         self, kind: NameKind, removed: list[SourceName], added: list[SourceName]
     ) -> Iterator[Change]:
-        """Yield what changes between literal names and expressions, and take these names from the lists."""
+        """Yield the names that change between literal and expression, and remove them from the lists."""
         old_names, new_names = self.old.names(self.file.old_path), self.new.names(self.file.new_path)
         sides = [[item for item in names.expressions if item.kind is kind] for names in (old_names, new_names)]
-        gone = [item for item in sides[0] if all(item.name != other.name for other in sides[1])]
-        come = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
-        for item in list(gone):  # another name for the same thing
-            other = next((each for each in come if each.type == item.type), None)
+        removed_expressions = [item for item in sides[0] if all(item.name != other.name for other in sides[1])]
+        added_expressions = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
+        for item in list(removed_expressions):  # another name for the same thing
+            other = next((expression for expression in added_expressions if expression.type == item.type), None)
             if other is not None:
-                gone.remove(item)
-                come.remove(other)
-        for item, other in _take_pairs(removed, come):
+                removed_expressions.remove(item)
+                added_expressions.remove(other)
+        for item, other in _take_pairs(removed, added_expressions):
             text = phrase(
-                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name(item), new=other.name
+                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name_text(item), new=other.name
             )
             yield self._change(text, other.span, self.new, None)
-        for item, other in _take_pairs(added, gone):
-            text = phrase("{kind} {name} had a computed name: {old}", kind=kind.title, name=_name(item), old=other.name)
+        for item, other in _take_pairs(added, removed_expressions):
+            text = phrase(
+                "{kind} {name} had a computed name: {old}", kind=kind.title, name=_name_text(item), old=other.name
+            )
             yield self._change(text, item.span, self.new, None)
-        come = [item for item in come if self.new.count(item) > self.old.count(item)]
-        gone = [item for item in gone if self.old.count(item) > self.new.count(item)]
-        if come:
-            text = phrase("{kind} with computed names added: {names}", kind=kind.plural, names=_names(come))
-            yield self._change(text, come[0].span, self.new, None)
+        added_expressions = [item for item in added_expressions if self.new.count(item) > self.old.count(item)]
+        removed_expressions = [item for item in removed_expressions if self.old.count(item) > self.new.count(item)]
+        if added_expressions:
+            text = phrase(
+                "{kind} with computed names added: {names}", kind=kind.plural, names=_names_text(added_expressions)
+            )
+            yield self._change(text, added_expressions[0].span, self.new, None)
             removed.clear()
-        if gone:
-            text = phrase("{kind} with computed names removed: {names}", kind=kind.plural, names=_names(gone))
-            yield self._change(text, gone[0].span, self.old, None)
+        if removed_expressions:
+            text = phrase(
+                "{kind} with computed names removed: {names}", kind=kind.plural, names=_names_text(removed_expressions)
+            )
+            yield self._change(text, removed_expressions[0].span, self.old, None)
             added.clear()
 
     def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the rates and periods that differ, if both versions have equally many, and those of a new node."""
+        """Yield the changed rates and periods, if both versions have equally many, and all rates of a new node."""
         old_rates, new_rates = old_names.rates, new_names.rates
-        if self.file.old_path is None and new_rates and any(new_names.of(NameKind.NODE)):
+        if self.file.old_path is None and new_rates and any(new_names.of_kind(NameKind.NODE)):
             texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
             yield self._change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
         if len(old_rates) != len(new_rates):
@@ -403,20 +417,20 @@ class _Pair:
                 yield self._change(text, span, self.new, None)
 
     def _import_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the new absolute imports of modules of the same package, which fail once it is installed."""
+        """Yield new absolute imports of modules of the same package. They fail once the package is installed."""
         path = self.file.new_path or ""
         package = self.new.package(path)
         if package is None or not is_installed_package(self.new.version, package, path):
             return
         before = {name for name, _ in old_names.absolute_imports}
-        for index in failing_imports(self.new.version, package, path, new_names):
+        for index in find_failing_imports(self.new.version, package, path, new_names):
             name, span = new_names.absolute_imports[index]
             if name not in before:
                 text = phrase("absolute import of '{name}', a module of the same package", name=name)
                 yield self._change(text, span, self.new, phrase("the package cannot be imported once it is installed"))
 
     def _undefined_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the names that are still used, but not defined or imported any more."""
+        """Yield the names that are still used but no longer defined or imported."""
         for name, span in new_names.undefined.items() if self.file.old_path is not None else ():
             if name in old_names.bound:
                 text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
@@ -429,31 +443,31 @@ class _Pair:
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
 
 
-def _key(item: SourceName) -> str:
-    """Return the name by which versions are compared. A handle of ROS 1 may be private without saying so."""
+def _comparison_name(item: SourceName) -> str:
+    """Return the name by which versions are compared. In ROS 1, a private name may lack the ``~``."""
     return item.name.lstrip("~/") if item.kind is NameKind.PARAMETER else item.name
 
 
 def _is_number(rate: str) -> bool:
-    """Return whether the argument of a rate has no names besides those of units."""
+    """Return whether the argument of a rate has no names except units."""
     argument = rate.partition("(")[2]
     return re.search(r"[A-Za-z_]{2,}", _UNITS.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
 
 
-def _name(item: SourceName) -> str:
-    """Return a name with the type of its messages, the default of a parameter, or the arguments of a function."""
+def _name_text(item: SourceName) -> str:
+    """Return a name with its message type, the default of a parameter, or the arguments of a function."""
     arguments = dict(item.details).get(Detail.ARGUMENTS, "()")
     if arguments != "()" and len(arguments) <= _MAX_ARGUMENTS:
         return f"'{item.name}' {arguments}"
     return f"'{item.name}' ({item.type})" if item.type else f"'{item.name}'"
 
 
-def _names(items: Sequence[SourceName]) -> Phrase:
-    return joined_first(map(_name, items), MAX_NAMES)
+def _names_text(items: Sequence[SourceName]) -> Phrase:
+    return joined_first(map(_name_text, items), MAX_NAMES)
 
 
 def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
-    """Return why added names break others, or None if none of them is required."""
+    """Return the reason why added names are breaking, or None if none of them is required."""
     names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
     if not names:
         return None
@@ -463,51 +477,53 @@ def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
 
 
 def _other_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:
-    """Return the imported names that another version of the file neither defines nor may import with a star."""
-    defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of(kind)}
+    """Return the imported names that the other version of the file neither defines nor may import by ``*``."""
+    defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of_kind(kind)}
     return [] if names.has_star else [item for item in items if item.name not in defined]
 
 
 def _has_class(function: SourceName, classes: Collection[str]) -> bool:
-    """Return whether a function of C++ is in one of the classes, or in none."""
+    """Return whether a C++ function is in one of the given classes or in no class."""
     names = function.name.split("::")[:-1]
     return not names or names[-1] in classes
 
 
-def _is_of(function: SourceName, classes: Collection[str]) -> bool:
-    """Return whether a function of Python is a method of one of the classes, or of none."""
+def _is_method_of(function: SourceName, classes: Collection[str]) -> bool:
+    """Return whether a Python function is a method of one of the given classes or no method."""
     class_name, _, _ = function.name.rpartition(".")
     return not class_name or class_name in classes
 
 
-def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
-    """Return the removed and added names that are the same thing.
+def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
+    """Return the pairs of a removed and an added name of the same thing.
 
-    These are the only ones if their types or names are alike, the only ones of a type, and the most similar names.
+    A pair is a single removed and added name that are alike, the only names of a type, or the most similar names.
     """
     pairs: list[tuple[SourceName, SourceName]] = []
     if len(removed) == len(added) == 1:
         (old,), (new,) = removed, added
         has_types = old.kind not in (NameKind.PARAMETER, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
         is_same = old.type == new.type and (has_types or bool(old.type))
-        return [(old, new)] if is_same or _similarity(old, new) >= _SIMILAR else []
+        return [(old, new)] if is_same or _name_similarity(old, new) >= _MIN_SIMILARITY else []
     rest = list(added)
     is_compared = len(removed) * len(added) <= _MAX_COMPARED
     for item in removed:
-        similar = [each for each in rest if _fits(item, each)] if is_compared else []
-        candidates = [each for each in similar if _similarity(item, each) >= _SIMILAR]
-        same = [[each for each in items if each.type == item.type and item.type] for items in (removed, rest)]
+        similar = [candidate for candidate in rest if _has_compatible_type(item, candidate)] if is_compared else []
+        candidates = [candidate for candidate in similar if _name_similarity(item, candidate) >= _MIN_SIMILARITY]
+        same = [
+            [candidate for candidate in items if candidate.type == item.type and item.type] for items in (removed, rest)
+        ]
         if item.kind is not NameKind.PARAMETER and len(same[0]) == len(same[1]) == 1:
             candidates = same[1]
         if candidates:
-            best = max(candidates, key=lambda each: _similarity(item, each))
+            best = max(candidates, key=lambda candidate: _name_similarity(item, candidate))
             pairs.append((item, best))
             rest.remove(best)
     return pairs
 
 
 def _take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
-    """Take the names and expressions that are probably the same thing from both lists, and yield them."""
+    """Remove the names and expressions that are probably the same thing from both lists, and yield them as pairs."""
     for item in list(literals):
         is_only = len(literals) == len(expressions) == 1
         other = next((expression for expression in expressions if is_only or expression.type == item.type), None)
@@ -517,10 +533,10 @@ def _take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> It
             yield item, other
 
 
-def _fits(old: SourceName, new: SourceName) -> bool:
+def _has_compatible_type(old: SourceName, new: SourceName) -> bool:
     return old.type == new.type or not old.type or not new.type
 
 
-def _similarity(old: SourceName, new: SourceName) -> float:
+def _name_similarity(old: SourceName, new: SourceName) -> float:
     old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
     return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()

@@ -1,4 +1,4 @@
-"""The names in a source in C++, for rclcpp and roscpp."""
+"""Read the names in a C++ source for rclcpp and roscpp."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_functions
+from linkwright.review.sources.cpp_functions import DeclaredFunction, read_declared_functions
 from linkwright.review.sources.cpp_members import header_texts, made_members
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 
@@ -45,7 +45,7 @@ _ROS1 = frozenset(
         *("param", "getParam", "getParamCached", "get", "lookupTransform", "waitForTransform", "canTransform"),
     }
 )
-"""The methods whose names other libraries have, too, so that only literal names count."""
+"""The methods whose names also occur in other libraries, so that only literal names count."""
 _NODE_FIRST = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
 _OUTPUTS = frozenset({"getParam", "getParamCached", "get"})
@@ -86,25 +86,25 @@ _BRACKETS = {"(": ")", "<": ">", "[": "]", "{": "}"}
 
 
 def read_cpp(source: SourceText, names: SourceNames) -> None:
-    """Add the names in a source in C++."""
+    """Add the names in a C++ source."""
     reader = _Reader(source, names)
     reader.read()
 
 
 class _Reader:
-    """Adds the names in a source.
+    """Reads the names in a C++ source.
 
     Args:
-        source: the source.
-        names: the names to which those of the source are added.
+        source: the text of the source.
+        names: the collection to which the names are added.
     """
 
     def __init__(self, source: SourceText, names: SourceNames) -> None:
         self._source = source
         self._names = names
-        self._text = _COMMENT_OR_TEXT.sub(_without_comment, source.text)
-        self._constants = _constants(self._text)
-        self._namespaces = _namespaces(self._text)
+        self._text = _COMMENT_OR_TEXT.sub(_blank_comment, source.text)
+        self._constants = _find_constants(self._text)
+        self._namespaces = _find_namespaces(self._text)
 
     def read(self) -> None:
         """Add the names."""
@@ -126,7 +126,7 @@ class _Reader:
         for match in _RECONFIGURATION.finditer(text):
             self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
         for match in _COMPONENT.finditer(text):
-            for begin, end in list(_arguments(text, match.end() - 1))[:1]:
+            for begin, end in list(_argument_offsets(text, match.end() - 1))[:1]:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
         for match in _CLASS.finditer(text):
             self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
@@ -134,11 +134,11 @@ class _Reader:
         self._names.is_program = re.search(r"\bint\s+main\s*\(", text) is not None
 
     def _read_functions(self) -> None:
-        """Add the functions of a header; the type of each is the list of its parameters, for each overload."""
+        """Add the functions of a header. The type of a function is the list of parameters of each overload."""
         if PurePosixPath(self._source.name).suffix not in HEADER_SUFFIXES:
             return
         overloads: dict[str, list[DeclaredFunction]] = {}
-        for function in declared_functions(self._text):
+        for function in read_declared_functions(self._text):
             if function.is_override:
                 self._names.overrides.add(function.name.rpartition("::")[2])
             else:
@@ -157,7 +157,7 @@ class _Reader:
             kind = NameKind.ACTION_CLIENT
         start, type_name = match.end(), ""
         if text[start] == "<":
-            end = _end_of(text, start)
+            end = _closing_offset(text, start)
             type_name = " ".join(text[start + 1 : end].split())
             if function == "advertiseService":
                 type_name = type_name.partition(",")[0].removesuffix("::Request")
@@ -167,14 +167,14 @@ class _Reader:
             return
         if function == "param" and not type_name and not match["scope"].strip():
             return  # a function of another name
-        arguments = list(_arguments(text, start))
+        arguments = list(_argument_offsets(text, start))
         if kind is NameKind.FRAME_LOOKUP:
             for begin, end in arguments[:2]:
                 self._add_literal(kind, begin, end)
             return
         named = arguments[1:2] if function in _NODE_FIRST else arguments[:1]
         candidates = arguments if is_action else named
-        found = next(((begin, end) for begin, end in candidates if self._value(begin, end) is not None), None)
+        found = next(((begin, end) for begin, end in candidates if self._literal_text(begin, end) is not None), None)
         if found is not None:
             receiver = _RECEIVER.search(text, max(0, match.start("name") - 80), match.start("name"))
             namespace = self._namespaces.get(receiver["name"], "") if receiver and function in _ROS1 else ""
@@ -198,12 +198,12 @@ class _Reader:
         if kind is NameKind.PARAMETER:
             if type_name:
                 details.append((Detail.VALUE_TYPE if function in _ROS2_PARAMETERS else Detail.READ_AS, type_name))
-            type_name = "" if function in _OUTPUTS else self._default(function, arguments)
+            type_name = "" if function in _OUTPUTS else self._literal_default(function, arguments)
         elif kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) and others and _QOS.fullmatch(others[0]):
             details.append((Detail.QUEUE if function in _ROS1 else Detail.QOS, " ".join(others[0].split())))
         if kind is NameKind.PUBLISHER and function in _ROS1 and others[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))
-        name = self._value(*found) or ""
+        name = self._literal_text(*found) or ""
         if namespace and name and not name.startswith(("/", "~")):
             name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
         self._add(kind, name, *found, type_name, tuple(details))
@@ -211,14 +211,14 @@ class _Reader:
             self._add_callback(kind, name, arguments)
 
     def _add_callback(self, kind: NameKind | None, name: str, arguments: list[tuple[int, int]]) -> None:
-        """Add the member function that messages, requests, goals or a timer call, if it is the only one."""
+        """Add the member function that messages, requests, goals or a timer call, if there is only one."""
         text = self._text[arguments[0][0] : arguments[-1][1]]
         functions = set(_POINTER.findall(text))
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
 
-    def _default(self, function: str, arguments: list[tuple[int, int]]) -> str:
-        """Return the literal default of a parameter; that of a function that returns the value is the second."""
+    def _literal_default(self, function: str, arguments: list[tuple[int, int]]) -> str:
+        """Return the literal default of a parameter. A function that returns the value takes it as second argument."""
         index = _DEFAULT_INDEX.get(function, 1)
         index = index if index < len(arguments) else 1
         if index >= len(arguments):
@@ -233,17 +233,17 @@ class _Reader:
         return "" if constant is None else f'"{constant}"'
 
     def _read_members(self) -> None:
-        """Add the topics and actions that members of a class, or variables, are made with."""
-        headers = [_COMMENT_OR_TEXT.sub(_without_comment, text) for text in header_texts(Path(self._source.name))]
+        """Add the topics and actions with which members and variables are constructed."""
+        headers = [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in header_texts(Path(self._source.name))]
         for member in made_members(self._text, headers):
-            for begin, end in list(_arguments(self._text, member.start))[:3]:
+            for begin, end in list(_argument_offsets(self._text, member.start))[:3]:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break
 
     def _read_rate(self, match: re.Match[str]) -> None:
-        arguments = list(_arguments(self._text, match.end() - 1))
+        arguments = list(_argument_offsets(self._text, match.end() - 1))
         is_timer = match["name"] == "create_timer"
-        texts = [" ".join(self._text[slice(*each)].split()) for each in arguments]
+        texts = [" ".join(self._text[slice(*argument)].split()) for argument in arguments]
         index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
         if index < len(texts):
             name = match["name"].split()[0]
@@ -251,7 +251,7 @@ class _Reader:
             if "imer" in name:
                 self._add_callback(None, "", arguments)
 
-    def _value(self, begin: int, end: int) -> str | None:
+    def _literal_text(self, begin: int, end: int) -> str | None:
         """Return the text of a literal or of a constant of the source, or None for another expression."""
         literal = _TEXT.fullmatch(self._text[begin:end])
         if literal is not None:
@@ -260,13 +260,13 @@ class _Reader:
         return None if variable is None else self._constants.get(variable["name"])
 
     def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
-        arguments = list(_arguments(self._text, start))
+        arguments = list(_argument_offsets(self._text, start))
         if index < len(arguments):
             self._add_literal(kind, *arguments[index])
 
     def _add_literal(self, kind: NameKind, begin: int, end: int, type_name: str = "") -> bool:
-        """Add the name in an argument if it is literal, and return whether it is."""
-        text = self._value(begin, end)
+        """Add the name in an argument if it is a literal, and return whether it is."""
+        text = self._literal_text(begin, end)
         if text:
             self._add(kind, text, begin, end, type_name)
         return bool(text)
@@ -292,8 +292,8 @@ class _Reader:
         return self._source.span(begin, max(end, begin + 1))
 
 
-def _constants(text: str) -> Mapping[str, str]:
-    """Return the texts of constants and of variables that are set once, by name."""
+def _find_constants(text: str) -> Mapping[str, str]:
+    """Return the texts of constants and of variables assigned once, by name."""
     constants: dict[str, str] = {}
     for match in _CONSTANT.finditer(text):
         name = match["name"] or match["macro"]
@@ -304,8 +304,8 @@ def _constants(text: str) -> Mapping[str, str]:
     return constants
 
 
-def _namespaces(text: str) -> Mapping[str, str]:
-    """Return the namespaces of node handles of ROS 1, by variable."""
+def _find_namespaces(text: str) -> Mapping[str, str]:
+    """Return the namespaces of ROS 1 node handles, by variable."""
     members = set(re.findall(r"\bNodeHandle\s+(\w+)\s*;", text))
     namespaces = {
         match["name"]: match["namespace"].rstrip("/")
@@ -318,13 +318,13 @@ def _namespaces(text: str) -> Mapping[str, str]:
     return namespaces
 
 
-def _without_comment(match: re.Match[str]) -> str:
-    """Return a text as it is, and spaces for a comment or character."""
+def _blank_comment(match: re.Match[str]) -> str:
+    """Return a string unchanged, or spaces for a comment or character literal."""
     return match[0] if match[0].startswith('"') else re.sub(r"[^\n]", " ", match[0])
 
 
-def _end_of(text: str, start: int) -> int:
-    """Return the offset of the bracket that closes the one at an offset, or the end of the text."""
+def _closing_offset(text: str, start: int) -> int:
+    """Return the offset of the bracket that closes the bracket at an offset, or the end of the text."""
     depth, opening = 0, text[start]
     for index in range(start, len(text)):
         depth += (text[index] == opening) - (text[index] == _BRACKETS[opening])
@@ -333,7 +333,7 @@ def _end_of(text: str, start: int) -> int:
     return len(text)
 
 
-def _arguments(text: str, start: int) -> Iterator[tuple[int, int]]:
+def _argument_offsets(text: str, start: int) -> Iterator[tuple[int, int]]:
     """Yield the offsets of the arguments in the parentheses that begin at an offset."""
     depth, begin, is_text = 0, start + 1, False
     for index in range(start + 1, len(text)):

@@ -1,4 +1,4 @@
-"""The public functions that a header in C++ declares, with the types of their arguments."""
+"""Read the public functions that a C++ header declares, with the types of their arguments."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _QUALIFIERS = re.compile(
     r"\s*(?:const|volatile|noexcept(?:\([^)]*\))?|override|final|&&?|=\s*0|=\s*default|->[^()]*|\s)*", re.DOTALL
 )
 _PARAMETER = re.compile(r"(?P<type>.*[\s*&>])(?P<name>\w+)\s*(?P<array>\[\w*\])?", re.DOTALL)
-_WORDS = frozenset({"const", "unsigned", "signed", "long", "struct", "typename", "short", "enum", "class"})
+_TYPE_KEYWORDS = frozenset({"const", "unsigned", "signed", "long", "struct", "typename", "short", "enum", "class"})
 _KEYWORDS = frozenset({"if", "for", "while", "switch", "return", "sizeof", "decltype", "alignas", "static_assert"})
 _OPENING = re.compile(r"[({\[<]")
 _CLOSING = re.compile(r"[)}\]>]")
@@ -26,10 +26,10 @@ class DeclaredFunction(NamedTuple):
     """A function of a header.
 
     Attributes:
-        name: the name with that of its class.
-        parameters: the types of the parameters; one with a default ends with ``= ...``.
+        name: the name, qualified by its class.
+        parameters: the types of the parameters. A parameter with a default ends with ``= ...``.
         is_pure: whether derived classes must define it.
-        is_override: whether it overrides a function of a base class, which decides who can call it.
+        is_override: whether it overrides a function of a base class, which determines its callers.
         start: the offset of the declaration.
     """
 
@@ -46,7 +46,7 @@ class _Scope(NamedTuple):
     access: str
 
 
-def declared_functions(text: str) -> Iterator[DeclaredFunction]:
+def read_declared_functions(text: str) -> Iterator[DeclaredFunction]:
     """Yield the public functions that a header declares.
 
     Args:
@@ -69,16 +69,16 @@ def declared_functions(text: str) -> Iterator[DeclaredFunction]:
             continue
         is_visible = all(scope.is_open and scope.access == "public" for scope in scopes)
         if character != "}" and is_visible and "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
-            yield from _function(chunk, [scope.name for scope in scopes if scope.name], start)
+            yield from _read_function(chunk, [scope.name for scope in scopes if scope.name], start)
         if character == "{":
-            scopes.append(_scope(chunk))
+            scopes.append(_read_scope(chunk))
         elif character == "}" and scopes:
             scopes.pop()
         start = index + 1
 
 
-def _scope(chunk: str) -> _Scope:
-    """Return the scope that a text opens. Only namespaces and classes can have declarations for others."""
+def _read_scope(chunk: str) -> _Scope:
+    """Return the scope that a text opens. Only namespaces and classes can contain public declarations."""
     if _OPEN_SCOPE.search(chunk):
         return _Scope("", is_open=True, access="public")
     match = _SCOPE.search(chunk)
@@ -88,35 +88,35 @@ def _scope(chunk: str) -> _Scope:
     return _Scope(match["name"], is_open=True, access="public" if is_struct else "private")
 
 
-def _function(chunk: str, classes: list[str], start: int) -> Iterator[DeclaredFunction]:
-    """Yield the function that a declaration declares, if it is one."""
+def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[DeclaredFunction]:
+    """Yield the declared function, unless the declaration is something else."""
     declaration = _INITIALIZERS.sub("", chunk)
     for match in _FUNCTION.finditer(declaration):
-        end = _end_of(declaration, match.end() - 1)
+        end = _closing_offset(declaration, match.end() - 1)
         rest = declaration[end + 1 :]
         is_name = match["name"] not in _KEYWORDS and not match["name"].isupper() and not match["name"].startswith("~")
         if end < 0 or not _QUALIFIERS.fullmatch(rest) or not is_name or "=" in declaration[: match.start()]:
             continue
-        parameters = tuple(_parameter(text) for text in _split(declaration[match.end() : end]))
+        parameters = tuple(_parameter_type(text) for text in _split_parameters(declaration[match.end() : end]))
         name = "::".join([*classes, "".join(match["name"].split())])
         is_override = re.search(r"\b(?:override|final)\b", rest) is not None
         yield DeclaredFunction(name, parameters, re.search(r"=\s*0\s*$", rest) is not None, is_override, start)
         return
 
 
-def _parameter(text: str) -> str:
+def _parameter_type(text: str) -> str:
     """Return the type of a parameter, with a mark if it has a default."""
     value, _, default = text.partition("=")
     match = _PARAMETER.fullmatch(value.strip())
     type_name = value
-    if match is not None and set(match["type"].split()) - _WORDS and match["name"] not in _WORDS:
+    if match is not None and set(match["type"].split()) - _TYPE_KEYWORDS and match["name"] not in _TYPE_KEYWORDS:
         type_name = match["type"] + (match["array"] or "")
     type_name = re.sub(r"\s*([*&<>,:])\s*", r"\1", " ".join(type_name.split()))
     return f"{type_name} = ..." if default else type_name
 
 
-def _end_of(text: str, start: int) -> int:
-    """Return the offset of the parenthesis that closes the one at an offset, or -1."""
+def _closing_offset(text: str, start: int) -> int:
+    """Return the offset of the parenthesis that closes the parenthesis at an offset, or -1."""
     depth = 0
     for index in range(start, len(text)):
         depth += (text[index] == "(") - (text[index] == ")")
@@ -125,7 +125,7 @@ def _end_of(text: str, start: int) -> int:
     return -1
 
 
-def _split(text: str) -> Iterator[str]:
+def _split_parameters(text: str) -> Iterator[str]:
     """Yield the parameters in the text between parentheses."""
     depth = begin = 0
     for index, character in enumerate(text):

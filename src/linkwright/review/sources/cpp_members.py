@@ -1,4 +1,4 @@
-"""The action servers, action clients and filtered subscriptions of a class in C++, which a header may declare."""
+"""Find the action servers, action clients and filtered subscriptions of C++ classes."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _MADE = re.compile(rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+){_CLASS}\s*>?\
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', re.MULTILINE)
 _MAX_BYTES = 1 << 20
 _MAX_FOLDERS = 4
-"""The number of folders above a source in which its headers are searched."""
+"""The maximum number of folders above a source in which its headers are searched."""
 
 
 class MadeMember(NamedTuple):
-    """A place where a member or variable is made.
+    """A place where a member or variable is constructed.
 
     Attributes:
-        kind: the kind of its name.
+        kind: the kind of the name.
         type: the type of the action or messages.
         start: the offset of the parenthesis before its arguments.
     """
@@ -38,7 +38,7 @@ class MadeMember(NamedTuple):
 
 
 def made_members(text: str, headers: Sequence[str]) -> Iterator[MadeMember]:
-    """Yield the places in a source where action servers, action clients and filtered subscriptions are made.
+    """Yield the places in a source that construct action servers, action clients and filtered subscriptions.
 
     Args:
         text: the source without comments.
@@ -46,15 +46,15 @@ def made_members(text: str, headers: Sequence[str]) -> Iterator[MadeMember]:
     """
     types: dict[str, tuple[NameKind, str]] = {}
     aliases: dict[str, tuple[NameKind, str]] = {}
-    for each in (*headers, text):
-        for match in (match for pattern in _ALIASES for match in pattern.finditer(each)):
-            aliases[match["name"]] = _kind(match["action"]), _type(match["type"])
-        for match in _MEMBER.finditer(each):
+    for source in (*headers, text):
+        for match in (match for pattern in _ALIASES for match in pattern.finditer(source)):
+            aliases[match["name"]] = _action_kind(match["action"]), _normalize_type(match["type"])
+        for match in _MEMBER.finditer(source):
             if match["action"] or "message_filters" in match["class"]:
-                types[match["variable"]] = _kind(match["action"]), _type(match["type"])
-    for each in (*headers, text):
+                types[match["variable"]] = _action_kind(match["action"]), _normalize_type(match["type"])
+    for source in (*headers, text):
         for name, alias in aliases.items():
-            types.update((match[1], alias) for match in re.finditer(rf"\b{name}\s+(\w+)\s*[;({{,]", each))
+            types.update((match[1], alias) for match in re.finditer(rf"\b{name}\s+(\w+)\s*[;({{,]", source))
     for variable, (kind, type_name) in types.items():
         for made in re.finditer(rf"\b{variable}\s*\(", text):
             yield MadeMember(kind, type_name, made.end() - 1)
@@ -63,26 +63,26 @@ def made_members(text: str, headers: Sequence[str]) -> Iterator[MadeMember]:
             yield MadeMember(kind, type_name, made.end() - 1)
     for match in _MADE.finditer(text):
         if match["action"]:
-            yield MadeMember(_kind(match["action"]), _type(match["type"]), match.end())
+            yield MadeMember(_action_kind(match["action"]), _normalize_type(match["type"]), match.end())
 
 
-def _kind(action: str | None) -> NameKind:
+def _action_kind(action: str | None) -> NameKind:
     return {"ActionServer": NameKind.ACTION, "ActionClient": NameKind.ACTION_CLIENT}.get(
         action or "", NameKind.SUBSCRIPTION
     )
 
 
-def _type(text: str) -> str:
+def _normalize_type(text: str) -> str:
     return text.partition(",")[0].rpartition("::")[2].strip()
 
 
 def header_texts(path: Path) -> list[str]:
-    """Return the texts of the headers beside a source, or in a folder ``include``, that the source includes.
+    """Return the texts of the included headers beside a source or in an ``include`` folder.
 
-    Headers outside of the package of the source are left out, also those that links and ``..`` lead to.
+    Headers outside of the package are left out, including targets of links and ``..``.
 
     Args:
-        path: the path of a source; one of a header has no headers.
+        path: the path of a source. The result is empty for a header.
     """
     if path.suffix in HEADER_SUFFIXES:
         return []

@@ -1,4 +1,4 @@
-"""The statements of a source in C++, by the function that they are in."""
+"""Read the statements of a C++ source by function."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _OUTPUT = re.compile(
     r"(?:ROS|RCLCPP|RCUTILS|RCL|CONSOLE|LOG|NODELET|CARTOGRAPHER|GZ|IGN|SPDLOG|EXPECT|ASSERT)\w*_?\w*|gz(?:err|msg|warn|dbg)|"
     r"c(?:out|err|log)|f?printf|puts|perror|throw|static_assert|assert|spdlog|log\w*|q(?:Debug|Warning|Info|Critical)"
 )
-"""The words with which a statement begins whose texts only people read."""
+"""The first words of statements whose strings are for human readers."""
 
 
 @dataclass
 class _Block:
-    """A block in braces.
+    """A block between braces.
 
     Attributes:
         name: the name of its function or class.
         is_function: whether it is in a function.
-        pending: the tokens of the statement in which the block is.
+        pending: the tokens of the statement that contains the block.
     """
 
     name: str
@@ -37,7 +37,7 @@ class _Block:
 
 
 def cpp_statements(text: str) -> dict[str, list[Statement]]:
-    """Return the statements of a source by the name of their function or class; others have no name.
+    """Return the statements of a source by the name of their function or class; empty for other statements.
 
     Statements that print, log or throw are left out.
     """
@@ -52,7 +52,7 @@ def cpp_statements(text: str) -> dict[str, list[Statement]]:
 def read_cpp_blocks(text: str) -> tuple[Mapping[str, Sequence[Sequence[Token]]], Collection[str]]:
     """Return the tokens of the statements by the name of their function or class, and the names of the functions.
 
-    Nothing is known of a text whose braces do not match, as with branches of the preprocessor.
+    Both are empty if the braces do not match, as with branches of the preprocessor.
     """
     reader = _Reader()
     is_complete = _read(text, reader)
@@ -104,35 +104,35 @@ class _Reader:
         for index, token in enumerate(tokens):
             text = token.text if token.kind is TokenKind.OPERATOR else ""
             if text == "{" and self._is_block(tokens, index, pairs):
-                self._open()
+                self._open_block()
                 depths.append(0)
             elif text == "}" and index not in values and len(self._blocks) > 1:
-                self._close()
+                self._close_block()
                 depths.pop()
             elif (text == ";" and depths[-1] == 0) or (
                 text == ":" and depths[-1] == 0 and self._pending and self._pending[0].text in _LABELS
             ):
-                self._end()
+                self._end_statement()
             else:
                 if text == "{" and index in pairs:
                     values.add(pairs[index])
                 depths[-1] += (text in ("(", "[", "{")) - (text in (")", "]", "}"))
                 self._pending.append(token)
-        self._end()
+        self._end_statement()
 
     def _is_block(self, tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> bool:
-        """Return whether a brace begins a block of statements, and not values."""
+        """Return whether a brace begins a block of statements rather than values."""
         end = pairs.get(index)
         if end is None:
             return True
         previous = tokens[index - 1].text if index else ""
-        if any(token.text in _SCOPES for token in self._pending) and not _parenthesis(self._pending):
+        if any(token.text in _SCOPES for token in self._pending) and not _starts_with_parenthesis(self._pending):
             return True
         return previous in (")", "else", "do", "try", "const", "override", "noexcept") or any(
             token.text == ";" for token in tokens[index:end]
         )
 
-    def _open(self) -> None:
+    def _open_block(self) -> None:
         block = self._blocks[-1]
         header = self._pending
         name, is_function, pending = block.name, block.is_function, header
@@ -150,22 +150,22 @@ class _Reader:
         self._blocks.append(_Block(name, is_function, pending))
         self._pending = []
 
-    def _close(self) -> None:
-        self._end()
+    def _close_block(self) -> None:
+        self._end_statement()
         self._pending = self._blocks.pop().pending
         if self._pending and _parenthesis_depth(self._pending) == 0 and self._pending[0].text in _CONTROLS:
-            self._end()
+            self._end_statement()
 
-    def _end(self) -> None:
+    def _end_statement(self) -> None:
         self.add(self._blocks[-1].name, self._pending)
         self._pending = []
 
 
 def _scope_name(header: Sequence[Token]) -> str | None:
-    """Return the name of the class that a text opens, an empty one for a namespace, or None for another text."""
+    """Return the name of the class that a header opens, an empty text for a namespace, or None for others."""
     words = [token.text for token in header]
     kind = next((word for word in words if word in _SCOPES), None)
-    if kind is None or _parenthesis(header):
+    if kind is None or _starts_with_parenthesis(header):
         return None
     if kind in ("namespace", "extern"):
         return ""
@@ -177,7 +177,7 @@ def _scope_name(header: Sequence[Token]) -> str | None:
 
 
 def _function_name(header: Sequence[Token]) -> str:
-    """Return the name before the parenthesis with the parameters in a function's header."""
+    """Return the name before the parameters in the header of a function."""
     index = _parameters_start(header)
     start = index
     while start > 0 and (
@@ -188,7 +188,7 @@ def _function_name(header: Sequence[Token]) -> str:
 
 
 def _parameters_start(header: Sequence[Token]) -> int:
-    """Return the index of the parenthesis with the parameters: the first one outside of templates and macros."""
+    """Return the index of the opening parenthesis of the parameters: the first outside of templates and macros."""
     pairs = bracket_pairs(header)
     depth = 0
     for index, token in enumerate(header):
@@ -202,7 +202,7 @@ def _parameters_start(header: Sequence[Token]) -> int:
     return 0
 
 
-def _parenthesis(tokens: Sequence[Token]) -> bool:
+def _starts_with_parenthesis(tokens: Sequence[Token]) -> bool:
     return any(token.text == "(" for token in tokens)
 
 

@@ -1,4 +1,4 @@
-"""The changes of a name that both versions of a source have: its type, its default and its other properties."""
+"""Compare a name that both versions of a source have: its type, default and other properties."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.sources.names import NO, Detail, NameKind, SourceName
-from linkwright.review.sources.signatures import parsed_signature
+from linkwright.review.sources.signatures import parse_signature
 
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
 _TRANSIENT = re.compile(r"transient_?local|latching", re.IGNORECASE)
 _DEFAULT = " = ..."
-"""The end of a parameter of a function that has a default."""
+"""The end of the text of a function parameter with a default."""
 
 
 def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
-    """Yield the changes of a name, each with the reason why it is breaking, or None."""
+    """Yield the changes of a name, each with the reason why it is breaking or None."""
     if old.type != new.type:
         yield from _type_changes(old, new)
     old_details, new_details = dict(old.details), dict(new.details)
@@ -34,7 +34,7 @@ def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
             old=before or missing,
             new=after or missing,
         )
-        yield text, _reason(new, detail, before, after)
+        yield text, _detail_reason(new, detail, before, after)
 
 
 def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
@@ -60,7 +60,7 @@ def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Ph
 
 
 def _function_text(name: str, old: str, new: str) -> Phrase:
-    """Return the change of the parameters of a function, with the overloads of one version only."""
+    """Return the change of the parameters of a function. Only overloads that one version lacks are shown."""
     overloads = old.split("; "), new.split("; ")
     removed, added = (
         " | ".join(f"({overload})" for overload in own if overload not in other)
@@ -74,12 +74,12 @@ def _function_text(name: str, old: str, new: str) -> Phrase:
 
 
 def _accepts_all(old: str, new: str) -> bool:
-    """Return whether new overloads of a function accept the arguments of all old ones."""
-    overloads = [_parameters(text) for text in new.split("; ")]
-    return all(any(_accepts(_parameters(text), overload) for overload in overloads) for text in old.split("; "))
+    """Return whether new overloads of a function accept the arguments of all old overloads."""
+    overloads = [_split_overloads(text) for text in new.split("; ")]
+    return all(any(_accepts(_split_overloads(text), overload) for overload in overloads) for text in old.split("; "))
 
 
-def _parameters(text: str) -> list[str]:
+def _split_overloads(text: str) -> list[str]:
     return re.split(r", (?![^<]*>)", text) if text else []
 
 
@@ -90,8 +90,8 @@ def _accepts(old: list[str], new: list[str]) -> bool:
     return is_same and all(parameter.endswith(_DEFAULT) for parameter in new[len(required) :])
 
 
-def _reason(name: SourceName, detail: Detail, before: str | None, after: str | None) -> Phrase | None:
-    """Return why another property is breaking, or None if it is not."""
+def _detail_reason(name: SourceName, detail: Detail, before: str | None, after: str | None) -> Phrase | None:
+    """Return the reason why a changed property is breaking, or None if it is not."""
     old, new = before or "", after or ""
     if detail is Detail.QOS:
         return _qos_reason(name, old, new)
@@ -102,7 +102,7 @@ def _reason(name: SourceName, detail: Detail, before: str | None, after: str | N
     if detail is Detail.REQUIRED and after:
         return phrase("callers that do not pass '{name}' get an error", name=name.name)
     if detail is Detail.ARGUMENTS:
-        before_change, after_change = parsed_signature(old), parsed_signature(new)
+        before_change, after_change = parse_signature(old), parse_signature(new)
         is_same = before_change is None or after_change is None or after_change.accepts_calls_of(before_change)
         return None if is_same else phrase("programs that call '{name}' with the old arguments fail", name=name.name)
     if detail is Detail.LATCH and before:
@@ -111,7 +111,7 @@ def _reason(name: SourceName, detail: Detail, before: str | None, after: str | N
 
 
 def _qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
-    """Return why another QoS is breaking: a subscription only gets what the publisher offers, or None."""
+    """Return the reason why another QoS is breaking, or None. A subscription needs what the publisher offers."""
     was_weak, is_weak = _BEST_EFFORT.search(old), _BEST_EFFORT.search(new)
     kept, keeps = _TRANSIENT.search(old), _TRANSIENT.search(new)
     if name.kind is NameKind.PUBLISHER:

@@ -1,4 +1,4 @@
-"""The names in a source of a node that other programs use or give it: topics, parameters, frames, options."""
+"""Define the names in a source that other programs use or pass: topics, parameters, frames, options."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ HEADER_SUFFIXES = (".hpp", ".hh", ".hxx", ".h")
 CPP_SUFFIXES = (".cpp", ".cc", ".cxx", *HEADER_SUFFIXES)
 PYTHON_SUFFIX = ".py"
 DYNAMIC_SUFFIX = ".cfg"
-"""The suffix of descriptions of dynamic_reconfigure, which are written in Python."""
+"""The suffix of dynamic_reconfigure descriptions, which are Python files."""
 
 YES, NO = "yes", "no"
-"""The values of properties that a name has or has not."""
+"""The values of boolean properties."""
 
 
 class NameKind(Enum):
-    """The kind of a name: what a report calls one of them, and several of them."""
+    """The kind of a name, with its title in the singular and the plural for reports."""
 
     PUBLISHER = (phrase("publisher"), phrase("publishers"))
     SUBSCRIPTION = (phrase("subscription"), phrase("subscriptions"))
@@ -47,7 +47,7 @@ class NameKind(Enum):
 
 
 class Detail(Enum):
-    """A property of a name besides its type: what a report calls it."""
+    """A property of a name besides its type, with its title for reports."""
 
     QOS = phrase("QoS")
     QUEUE = phrase("queue")
@@ -72,10 +72,10 @@ class SourceName:
     """A name in a source.
 
     Attributes:
-        kind: the kind.
-        name: the name as it is written, or the text of the expression that gives it.
+        kind: the kind of the name.
+        name: the name as written, or the text of the expression that computes it.
         type: the type of the messages, or the default of a parameter or option; empty if it is not literal.
-        span: the location.
+        span: the location in the file.
         details: the other properties that are literal.
     """
 
@@ -91,19 +91,19 @@ class SourceNames:
     """The names in a source.
 
     Attributes:
-        names: the literal names, each once.
-        expressions: the names that are expressions, whose values are not known.
+        names: the distinct literal names.
+        expressions: the names that are expressions, whose values are unknown.
         rates: the texts of rates and periods, each with its location.
-        overrides: the names of functions that override those of a base class.
-        is_program: whether the source is a program that is started, and not a library that is imported.
+        overrides: the names of functions that override a function of a base class.
+        is_program: whether the source is a program and not a library.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
-        is_error_certain: whether the syntax error is one in all versions of Python.
+        is_error_certain: whether it is a syntax error in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
         callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
             a timer.
-        plain_classes: the classes of a source in Python that certainly have no methods besides those in their bodies.
-        bound: the names that a source in Python 3 defines or imports.
-        undefined: the names that a source uses although nothing defines them, each with the location of its first use.
+        plain_classes: the classes of a Python source that certainly have no methods besides their bodies.
+        bound: the names that a Python 3 source defines or imports.
+        undefined: the undefined names that a source uses, each with the location of its first use.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
@@ -122,7 +122,7 @@ class SourceNames:
     has_star: bool = False
 
     def add(self, name: SourceName) -> None:
-        """Add a literal name, or complete the same one."""
+        """Add a literal name, or complete an equal name."""
         for index, other in enumerate(self.names):
             if (other.kind, other.name) == (name.kind, name.name):
                 if name.type and not other.type:
@@ -130,6 +130,6 @@ class SourceNames:
                 return
         self.names.append(name)
 
-    def of(self, kind: NameKind) -> Iterator[SourceName]:
+    def of_kind(self, kind: NameKind) -> Iterator[SourceName]:
         """Yield the literal names of a kind."""
         return (name for name in self.names if name.kind is kind)

@@ -1,4 +1,4 @@
-"""The imports in the ``__init__.py`` of a Python package: names that others import from it, and imports that fail."""
+"""Read the imports in the ``__init__.py`` of a Python package: the names that it offers, and failing imports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PACKAGE_FILE = "__init__.py"
 
 
 def read_imports(python: PythonFile, names: SourceNames) -> None:
-    """Add the public names that an ``__init__.py`` takes from modules of its package, or lists in ``__all__``.
+    """Add the public names that an ``__init__.py`` imports from its package or lists in ``__all__``.
 
     Names of other packages are left out, because programs import these names from their own packages.
     """
@@ -29,7 +29,7 @@ def read_imports(python: PythonFile, names: SourceNames) -> None:
             is_own = statement.level > 0 or (statement.module or "").partition(".")[0] == package
             names.has_star |= any(alias.name == "*" for alias in statement.names)
             for alias in statement.names if is_own else ():
-                _add(python, names, alias.asname or alias.name, alias)
+                _add_name(python, names, alias.asname or alias.name, alias)
             if statement.level == 0 and statement.module is not None:
                 names.absolute_imports.append((statement.module.partition(".")[0], python.span(statement)))
         elif isinstance(statement, ast.Import):
@@ -38,21 +38,21 @@ def read_imports(python: PythonFile, names: SourceNames) -> None:
         elif isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "__all__":
             items = statement.value.elts if isinstance(statement.value, (ast.List, ast.Tuple)) else ()
             for item in items:
-                _add(python, names, python.text(item) or "", item)
+                _add_name(python, names, python.text(item) or "", item)
 
 
-def _add(python: PythonFile, names: SourceNames, name: str, node: ast.expr | ast.alias) -> None:
+def _add_name(python: PythonFile, names: SourceNames, name: str, node: ast.expr | ast.alias) -> None:
     if name.isidentifier() and not name.startswith("_"):
         names.add(SourceName(NameKind.IMPORT, name, "", python.span(node)))
 
 
 def is_installed_package(version: Version, package: str | None, path: str) -> bool:
-    """Return whether a file is the ``__init__.py`` of a Python package that a package of ROS installs."""
+    """Return whether a file is the ``__init__.py`` of a Python package that a ROS package installs."""
     return PurePosixPath(path).name == PACKAGE_FILE and is_installed_module(version, package, path)
 
 
 def is_installed_module(version: Version, package: str | None, path: str) -> bool:
-    """Return whether a file is in the folder of a Python package that a package of ROS installs."""
+    """Return whether a file is in the folder of a Python package that a ROS package installs."""
     if package is None:
         return False
     file = PurePosixPath(path)
@@ -62,14 +62,14 @@ def is_installed_module(version: Version, package: str | None, path: str) -> boo
     return any(file.is_relative_to(folder) for folder in folders)
 
 
-def failing_imports(version: Version, package: str, path: str, names: SourceNames) -> Iterator[int]:
-    """Yield the indices of the absolute imports of an ``__init__.py`` that fail once the package is installed.
+def find_failing_imports(version: Version, package: str, path: str, names: SourceNames) -> Iterator[int]:
+    """Yield the indexes of the absolute imports of an ``__init__.py`` that fail once the package is installed.
 
-    They name a module beside the file, which Python finds only if the program runs in that folder. Python 2 finds it.
+    They name a module beside the file, which Python 3 finds only if the program runs in that folder.
 
     Args:
-        version: the version.
-        package: the folder of the package of ROS.
+        version: the version of the repository.
+        package: the folder of the ROS package.
         path: the path of the ``__init__.py``.
         names: the names in the file.
     """

@@ -1,4 +1,4 @@
-"""The names in a source in Python, for rclpy, rospy and argparse, and in descriptions of dynamic_reconfigure."""
+"""Read the names in a Python source for rclpy, rospy and argparse, and in dynamic_reconfigure descriptions."""
 
 from __future__ import annotations
 
@@ -60,12 +60,12 @@ _QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
 
 
 def read_python(source: SourceText, names: SourceNames) -> None:
-    """Add the names in a source in Python 3 or Python 2.
+    """Add the names in a Python 3 or Python 2 source.
 
     Raises:
         SyntaxError: the text is neither.
     """
-    python = parsed_source(source)
+    python = parse_source(source)
     _Reader(python, names).read()
     if python.source is source:  # not one that only Python 2 can parse
         names.bound = frozenset(bound_names(python.tree))
@@ -75,43 +75,49 @@ def read_python(source: SourceText, names: SourceNames) -> None:
 
 
 def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
-    """Add the parameters of a description of dynamic_reconfigure, with their defaults and limits.
+    """Add the parameters of a dynamic_reconfigure description, with their defaults and limits.
 
     Raises:
         SyntaxError: the text is not Python.
     """
-    python = parsed_source(source)
+    python = parse_source(source)
     for call in python.calls("add"):
-        name = python.text(_argument(call, 0, "name"))
+        name = python.text(_call_argument(call, 0, "name"))
         if name is None:
             continue
-        details = [(Detail.VALUE_TYPE, _shown(python, _argument(call, 1, "paramtype")).removesuffix("_t"))]
+        details = [
+            (Detail.VALUE_TYPE, _expression_text(python, _call_argument(call, 1, "paramtype")).removesuffix("_t"))
+        ]
         for detail, index, keyword in (
             (Detail.LEVEL, 2, "level"),
             (Detail.MINIMUM, 5, "min"),
             (Detail.MAXIMUM, 6, "max"),
         ):
-            text = _shown(python, _argument(call, index, keyword))
+            text = _expression_text(python, _call_argument(call, index, keyword))
             if text and text != "None":
                 details.append((detail, text))
         choices = argument_of(call, "edit_method")
         if choices is not None:
-            values = (_shown(python, item.args[1]) for item in _constants(python, choices) if len(item.args) > 1)
+            values = (
+                _expression_text(python, item.args[1])
+                for item in _enumeration_constants(python, choices)
+                if len(item.args) > 1
+            )
             details.append((Detail.CHOICES, ", ".join(values)))
-        default = _shown(python, _argument(call, 4, "default"))
+        default = _expression_text(python, _call_argument(call, 4, "default"))
         names.add(SourceName(NameKind.PARAMETER, name, default, python.span(call), tuple(details)))
 
 
-def _constants(python: PythonFile, node: ast.expr) -> Iterator[ast.Call]:
-    """Yield the calls that make the constants of an enumeration of dynamic_reconfigure."""
+def _enumeration_constants(python: PythonFile, node: ast.expr) -> Iterator[ast.Call]:
+    """Yield the calls that define the constants of a dynamic_reconfigure enumeration."""
     for part in ast.walk(python.resolved(node)):
         value = python.resolved(part) if isinstance(part, ast.Name) else part
         if isinstance(value, ast.Call) and called_name(value).endswith("const"):
             yield value
 
 
-def parsed_source(source: SourceText) -> PythonFile:
-    """Return a parsed source in Python 3 or Python 2.
+def parse_source(source: SourceText) -> PythonFile:
+    """Return a parsed Python 3 or Python 2 source.
 
     Raises:
         SyntaxError: the text is neither.
@@ -123,14 +129,14 @@ def parsed_source(source: SourceText) -> PythonFile:
         return _SourceFile(SourceText(source.name, text))
 
 
-def _argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
+def _call_argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
     if 0 <= index < len(call.args):
         return call.args[index]
     return argument_of(call, keyword)
 
 
-def _shown(python: PythonFile, node: ast.expr | None) -> str:
-    """Return the text of a literal, also of one that a name has, or else of the expression."""
+def _expression_text(python: PythonFile, node: ast.expr | None) -> str:
+    """Return the text of a literal or of a name with a literal value, or else of the expression."""
     if node is None:
         return ""
     value = python.resolved(node)
@@ -138,7 +144,7 @@ def _shown(python: PythonFile, node: ast.expr | None) -> str:
 
 
 def _is_required(call: ast.Call, option: str) -> bool:
-    """Return whether callers must pass an option or argument of a command line."""
+    """Return whether an option or argument of a command line is required."""
     if not option.startswith("-"):
         return argument_of(call, "nargs") is None and argument_of(call, "default") is None
     value = argument_of(call, "required")
@@ -146,7 +152,7 @@ def _is_required(call: ast.Call, option: str) -> bool:
 
 
 class _SourceFile(PythonFile):
-    """A source in which attributes of a class or object that are set once also have their values."""
+    """A Python source that also resolves attributes of classes and objects that are assigned once."""
 
     @cached_property
     def _attributes(self) -> dict[str, ast.expr | None]:
@@ -181,11 +187,11 @@ class _SourceFile(PythonFile):
 
 
 class _Reader:
-    """Adds the names in a source.
+    """Reads the names in a Python source.
 
     Args:
-        python: the source.
-        names: the names to which those of the source are added.
+        python: the parsed source.
+        names: the collection to which the names are added.
     """
 
     def __init__(self, python: PythonFile, names: SourceNames) -> None:
@@ -235,7 +241,7 @@ class _Reader:
                 self._names.callbacks[function.name] = (kind, text)
 
     def _read_methods(self, definition: ast.ClassDef) -> None:
-        """Add the public methods of a class, except those that the source passes to others, such as callbacks."""
+        """Add the public methods of a class, except methods that the source passes on, such as callbacks."""
         nodes = list(ast.walk(definition))
         called = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
         passed = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called}
@@ -274,29 +280,31 @@ class _Reader:
                 self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
         if function in _RCLPY:
             kind, type_keyword, name_keyword, qos_index = _RCLPY[function]
-            qos = self._qos(_argument(call, qos_index, "qos_profile"))
-            self._add(kind, _argument(call, 1, name_keyword), _argument(call, 0, type_keyword), qos)
+            qos = self._qos_details(_call_argument(call, qos_index, "qos_profile"))
+            self._add(kind, _call_argument(call, 1, name_keyword), _call_argument(call, 0, type_keyword), qos)
             if kind in _WITH_CALLBACK:
-                self._add_callback(kind, _argument(call, 1, name_keyword), _argument(call, 2, "callback"))
+                self._add_callback(kind, _call_argument(call, 1, name_keyword), _call_argument(call, 2, "callback"))
         elif function in _NODE_FIRST and len(call.args) > 2 and self._python.text(call.args[0]) is None:
-            self._add(_NODE_FIRST[function], _argument(call, 2, "action_name"), _argument(call, 1, "action_type"))
+            self._add(
+                _NODE_FIRST[function], _call_argument(call, 2, "action_name"), _call_argument(call, 1, "action_type")
+            )
             if _NODE_FIRST[function] is NameKind.ACTION:
-                self._add_callback(NameKind.ACTION, call.args[2], _argument(call, 3, "execute_callback"))
+                self._add_callback(NameKind.ACTION, call.args[2], _call_argument(call, 3, "execute_callback"))
         elif function in _NAME_FIRST and (call.args or call.keywords):
             self._read_ros1_call(call, function)
         elif function in _PARAMETER_CALLS:
             self._read_parameter(call, function)
         elif function == "declare_parameters":
-            self._read_parameters(_argument(call, 0, "namespace"), _argument(call, 1, "parameters"))
-        elif (function in _NODES and self._python.text(_argument(call, 0, "node_name")) is not None) or (
-            function == "__init__" and self._is_node(call)
+            self._read_parameters(_call_argument(call, 0, "namespace"), _call_argument(call, 1, "parameters"))
+        elif (function in _NODES and self._python.text(_call_argument(call, 0, "node_name")) is not None) or (
+            function == "__init__" and self._is_node_constructor(call)
         ):
-            self._add(NameKind.NODE, _argument(call, 0, "node_name"), None)
+            self._add(NameKind.NODE, _call_argument(call, 0, "node_name"), None)
         else:
             self._read_other_call(call, function)
 
     def _read_ros1_call(self, call: ast.Call, function: str) -> None:
-        name, types = _argument(call, 0, "name"), _argument(call, 1, "data_class")
+        name, types = _call_argument(call, 0, "name"), _call_argument(call, 1, "data_class")
         if self._python.text(name) is None and not called_name(call).startswith(("rospy", "actionlib")):
             return
         details = []
@@ -307,15 +315,15 @@ class _Reader:
         kind = _NAME_FIRST[function]
         self._add(kind, name, types, tuple(details))
         if kind in _WITH_CALLBACK:
-            self._add_callback(kind, name, _argument(call, 2, _WITH_CALLBACK[kind]))
+            self._add_callback(kind, name, _call_argument(call, 2, _WITH_CALLBACK[kind]))
 
     def _read_other_call(self, call: ast.Call, function: str) -> None:
         if function in _RATES and called_name(call).partition(".")[0] != "threading" and call.args:
             period = self._python.resolved(call.args[0])
-            text = f"{function}({_shown(self._python, period)})"
+            text = f"{function}({_expression_text(self._python, period)})"
             self._names.rates.append((text, self._python.span(call.args[0])))
             if "imer" in function:
-                self._add_callback(None, None, _argument(call, 1, "callback"))
+                self._add_callback(None, None, _call_argument(call, 1, "callback"))
         elif function in _LOOKUPS:
             for index in _LOOKUPS[function]:
                 if index < len(call.args):
@@ -330,7 +338,7 @@ class _Reader:
             self._read_option(call)
 
     def _add_callback(self, kind: NameKind | None, name: ast.expr | None, callback: ast.expr | None) -> None:
-        """Add the function that messages, requests, goals or a timer call, if its name and that of these are known."""
+        """Add the function that messages, requests, goals or a timer call, if both names are known."""
         text = self._python.text(name)
         is_known = text is not None or kind is None
         if isinstance(callback, (ast.Name, ast.Attribute)) and is_known:
@@ -347,14 +355,14 @@ class _Reader:
         for detail, keyword in ((Detail.VALUE_TYPE, "type"), (Detail.CHOICES, "choices")):
             node = argument_of(call, keyword)
             if node is not None:
-                details.append((detail, _shown(self._python, node)))
-        text = "" if default is None else _shown(self._python, default)
+                details.append((detail, _expression_text(self._python, node)))
+        text = "" if default is None else _expression_text(self._python, default)
         self._names.add(SourceName(NameKind.OPTION, name, text, self._python.span(call.args[0]), tuple(details)))
 
     def _read_parameter(self, call: ast.Call, function: str) -> None:
         index = 2 if function == "get_parameter_or" else 1
         keyword = "value" if function == "declare_parameter" else "default"
-        node, value = _argument(call, 0, "name"), _argument(call, index, keyword)
+        node, value = _call_argument(call, 0, "name"), _call_argument(call, index, keyword)
         is_ros1 = function.startswith("get_param") and function != "get_parameter_or"
         if is_ros1 and self._python.text(node) is None:
             return  # a function of another name
@@ -381,14 +389,14 @@ class _Reader:
             else:
                 self._add_expression(NameKind.PARAMETER, item, "")
 
-    def _is_node(self, call: ast.Call) -> bool:
-        """Return whether a call of ``__init__`` is in a class that is derived from a node."""
+    def _is_node_constructor(self, call: ast.Call) -> bool:
+        """Return whether a call of ``__init__`` is in a subclass of a node."""
         classes = (node for node in ast.walk(self._python.tree) if isinstance(node, ast.ClassDef))
         around = [node for node in classes if node.lineno <= call.lineno <= (node.end_lineno or node.lineno)]
         return bool(around) and any(ast.unparse(base).endswith("Node") for base in around[-1].bases)
 
-    def _qos(self, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
-        text = "" if node is None else _shown(self._python, self._python.resolved(node))
+    def _qos_details(self, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
+        text = "" if node is None else _expression_text(self._python, self._python.resolved(node))
         return ((Detail.QOS, text),) if _QOS.fullmatch(text) else ()
 
     def _add_frame(self, kind: NameKind, node: ast.expr) -> None:

@@ -1,4 +1,4 @@
-"""Turn a source in Python 2 into one that the parser of Python 3 accepts, with the same lines."""
+"""Convert a Python 2 source so that the parser of Python 3 accepts it, with the same lines."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _OCTAL = re.compile(r"0[0-7]+[lL]?")
 
 
 def as_python3(text: str) -> str:
-    """Return a source in which statements of Python 2 are replaced, so that it can be parsed.
+    """Return a source with the statements of Python 2 replaced, so that it can be parsed.
 
-    Statements that print or execute become ``pass``. All other names and texts stay in their lines.
+    Statements that print or execute become ``pass``. All other names and texts keep their lines.
     """
-    text = "\n".join(_with_spaces(line) for line in text.splitlines()) + "\n"
+    text = "\n".join(_expand_tabs(line) for line in text.splitlines()) + "\n"
     parts: list[str] = []
     statement: str = ""  # the first word of the statement
     depth, is_dropped, is_start = 0, False, True
@@ -40,25 +40,25 @@ def as_python3(text: str) -> str:
         elif depth == 0 and part == "," and statement in ("except", "raise"):
             is_dropped, part = True, " "
         else:
-            part = _replaced(str(kind), part)
+            part = _replace_statement(str(kind), part)
         is_start = ends or (is_start and not part.strip())
         parts.append(part)
     return "".join(parts)
 
 
-def _with_spaces(line: str) -> str:
-    """Return a line whose indentation has no tabs. Python 2 counts eight columns for one."""
+def _expand_tabs(line: str) -> str:
+    """Return a line with spaces for tabs in the indentation. A tab in Python 2 is eight columns."""
     content = line.lstrip(" \t\f")
     return line[: len(line) - len(content)].expandtabs(8) + content
 
 
 def _is_statement(text: str, end: int) -> bool:
-    """Return whether the word before an offset begins a statement of Python 2, and is not called or assigned."""
+    """Return whether the word before an offset begins a Python 2 statement, and is not called or assigned."""
     rest = text[end:].lstrip(" \t")
     return not rest.startswith(("=", ".")) or rest.startswith("==")
 
 
-def _replaced(kind: str, part: str) -> str:
+def _replace_statement(kind: str, part: str) -> str:
     if kind == "number" and _OCTAL.fullmatch(part):
         return part.replace("0", " ", 1).rstrip("lL") if part.strip("0lL") else "0"
     if kind == "number":

@@ -1,4 +1,4 @@
-"""The statements of a source in Python, by the function that they are in."""
+"""Read the statements of a Python source by function."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import SourceText
-from linkwright.review.sources.python import parsed_source
+from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.statements import Statement, statement_of
 from linkwright.review.sources.tokens import python_tokens
 
@@ -16,16 +16,16 @@ _OUTPUT = re.compile(
     r"set_description|input|exit)",
     re.IGNORECASE,
 )
-"""The functions whose texts only people read."""
+"""The functions whose strings are for human readers."""
 
 
 def python_statements(source: SourceText) -> dict[str, list[Statement]]:
-    """Return the statements of a source by the name of their function or class; those of the module have no name.
+    """Return the statements of a source by the name of their function or class; empty for the module.
 
     Raises:
         SyntaxError: the text is neither Python 3 nor Python 2.
     """
-    python = parsed_source(source)
+    python = parse_source(source)
     functions: dict[str, list[Statement]] = {}
     text = python.source.text
     line_starts = [0]
@@ -45,7 +45,7 @@ class _Reader:
         self._starts = line_starts
 
     def parts(self, body: Sequence[ast.stmt], scope: str) -> Iterator[tuple[str, int, int]]:
-        """Yield the parts of statements without those inside of them, each with the name of its function."""
+        """Yield the function name, start and end offset of each statement without nested statements."""
         for node in body:
             if _is_for_readers(node):
                 continue
@@ -53,7 +53,8 @@ class _Reader:
             if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
                 inner = f"{scope}.{node.name}" if scope else node.name
                 decorators = (
-                    self._offset(each.end_lineno or 0, each.end_col_offset or 0) for each in node.decorator_list
+                    self._offset(decorator.end_lineno or 0, decorator.end_col_offset or 0)
+                    for decorator in node.decorator_list
                 )
                 start = max([self._offset(node.lineno, node.col_offset), *decorators])
                 yield inner, start, self._start(blocks[0][0])
@@ -68,14 +69,14 @@ class _Reader:
                 yield from self.parts(block, scope)
 
     def _start(self, node: ast.stmt) -> int:
-        """Return the offset of the first decorator of a statement, or of the statement."""
+        """Return the offset of the first decorator of a statement, or of the statement itself."""
         places = [(node.lineno, node.col_offset)]
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-            places += [(each.lineno, each.col_offset - 1) for each in node.decorator_list]
+            places += [(decorator.lineno, decorator.col_offset - 1) for decorator in node.decorator_list]
         return self._offset(*min(places))
 
     def _offset(self, line: int, column: int) -> int:
-        """Return the offset of a place whose column counts bytes in UTF-8."""
+        """Return the offset in characters of a line and a column, which counts bytes in UTF-8."""
         content = self._lines[line - 1]
         if not content.isascii():
             column = len(content.encode()[: max(column, 0)].decode(errors="ignore"))
@@ -83,7 +84,7 @@ class _Reader:
 
 
 def blocks_of(node: ast.stmt) -> list[list[ast.stmt]]:
-    """Return the blocks of statements in a statement."""
+    """Return the blocks of a compound statement."""
     blocks = [getattr(node, name, []) for name in ("body", "orelse", "finalbody")]
     for child in (*getattr(node, "handlers", []), *getattr(node, "cases", [])):
         blocks.insert(1, child.body)
@@ -91,7 +92,7 @@ def blocks_of(node: ast.stmt) -> list[list[ast.stmt]]:
 
 
 def _is_for_readers(node: ast.stmt) -> bool:
-    """Return whether a statement is a docstring, prints, logs or raises an error."""
+    """Return whether a statement is a docstring, or prints, logs or raises an error."""
     if isinstance(node, (ast.Raise, ast.Assert, ast.Import, ast.ImportFrom)):
         return True
     if not isinstance(node, ast.Expr):
@@ -102,7 +103,7 @@ def _is_for_readers(node: ast.stmt) -> bool:
 
 
 def called_names(call: ast.expr) -> list[str]:
-    """Return the names of a called function, the last one first, such as ``info`` and ``get_logger``."""
+    """Return the names in a called function, the last name first, such as ``info`` and ``get_logger``."""
     function = call.func if isinstance(call, ast.Call) else None
     names: list[str] = []
     while function is not None:

@@ -1,4 +1,4 @@
-"""Read the names in a source of a node, in Python, in C++ or as a description of dynamic_reconfigure."""
+"""Read the names in a source of a node: Python, C++ or a dynamic_reconfigure description."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FORMATTED_TEXT = "f-string"
 """The beginning of the messages about errors in formatted texts."""
 
 
-def readable_source(path: Path) -> SourceText | None:
+def try_read_source(path: Path) -> SourceText | None:
     """Return the text of a source, or None if it cannot be read or is too large."""
     try:
         if path.stat().st_size > _MAX_BYTES:
@@ -26,9 +26,9 @@ def readable_source(path: Path) -> SourceText | None:
 
 
 def read_source_names(path: Path) -> SourceNames:
-    """Return the names in a source; those of a file that cannot be read are empty."""
+    """Return the names in a source. The result is empty for a file that cannot be read."""
     names = SourceNames()
-    source = readable_source(path)
+    source = try_read_source(path)
     if source is None:
         return names
     try:
@@ -47,9 +47,9 @@ def read_source_names(path: Path) -> SourceNames:
 
 
 def is_program_text(path: Path) -> bool:
-    """Return whether a file is a source in Python or C++, or a description of dynamic_reconfigure.
+    """Return whether a file is a Python or C++ source, or a dynamic_reconfigure description.
 
-    A script may have no suffix, but then a first line that names Python.
+    A script without a suffix needs a first line that names Python.
     """
     if path.suffix in (*CPP_SUFFIXES, PYTHON_SUFFIX):
         return True

@@ -1,4 +1,4 @@
-"""The rules for breaking changes of sources: names that other programs use."""
+"""Decide which changes of sources are breaking, by the names that other programs use."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _HEADERS = "include"
 
 
 def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
-    """Return whether names of a kind matter outside of a source.
+    """Return whether other files can use the names of a kind in a source.
 
-    Classes of C++ matter if they are in a header for other packages, functions of Python if they can be imported.
+    C++ classes count if they are in a header for other packages, Python functions if they can be imported.
 
     Args:
-        kind: the kind.
+        kind: the kind of the names.
         path: the path of the source.
         names: the names in the source.
     """
@@ -33,10 +33,10 @@ def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
 
 
 def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -> Phrase | None:
-    """Return why it is breaking that names are gone, or None if other programs do not use them.
+    """Return the reason why removing names is breaking, or None if other programs do not use them.
 
     Args:
-        items: the names, all of a kind.
+        items: the names, all of the same kind.
         names: all names in the old source.
         path: the path of the old source.
     """

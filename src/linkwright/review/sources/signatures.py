@@ -1,4 +1,4 @@
-"""The parameters of functions in Python: which calls fit them, and which of their calls another version accepts."""
+"""Compare the parameters of Python functions: which calls fit, and which calls another version accepts."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ class Signature:
     """The parameters of a function.
 
     Attributes:
-        text: the parameters as they are written, in parentheses and without annotations.
+        text: the parameters as written, in parentheses and without annotations.
         positional: the names of the parameters that take positional arguments.
-        unnamed: the number of these that take no keyword arguments.
-        required: the number of these that callers must pass.
-        keywords: the names of the parameters that only take keyword arguments.
-        required_keywords: the names of these that callers must pass.
-        has_rest: whether any other positional argument fits.
-        has_keywords: whether any other keyword argument fits.
+        unnamed: the number of positional-only parameters.
+        required: the number of required positional parameters.
+        keywords: the names of the keyword-only parameters.
+        required_keywords: the names of the required keyword-only parameters.
+        has_rest: whether the function takes any other positional arguments (``*args``).
+        has_keywords: whether the function takes any other keyword arguments (``**kwargs``).
     """
 
     text: str
@@ -33,7 +33,7 @@ class Signature:
     has_keywords: bool
 
     def fits(self, call: ast.Call) -> bool:
-        """Return whether the function can be called so; also for a call whose arguments are not certain."""
+        """Return whether a call fits the function. A call with uncertain arguments fits."""
         names = [keyword.arg for keyword in call.keywords]
         if None in names or any(isinstance(argument, ast.Starred) for argument in call.args):
             return True
@@ -45,7 +45,7 @@ class Signature:
         return is_known and is_complete and given.isdisjoint(names) and (count <= len(self.positional) or self.has_rest)
 
     def accepts_calls_of(self, other: Signature) -> bool:
-        """Return whether all calls that fit another version of the function fit this one, if they name no argument."""
+        """Return whether this version accepts all calls of another version that use no argument names."""
         has_room = len(self.positional) >= len(other.positional) or self.has_rest
         rest = set(other.keywords) - {*self.keywords, *self.positional}
         return (
@@ -62,7 +62,7 @@ _NONE = Signature("()", (), 0, 0, (), (), has_rest=False, has_keywords=False)
 
 
 def is_plain(definition: ast.ClassDef) -> bool:
-    """Return whether a class certainly has no other methods than those in its body."""
+    """Return whether a class certainly has no methods besides its body."""
     bases = [ast.unparse(base) for base in definition.bases]
     names = {node.name for node in definition.body if isinstance(node, ast.FunctionDef)}
     is_bare = not definition.decorator_list and not definition.keywords
@@ -70,19 +70,19 @@ def is_plain(definition: ast.ClassDef) -> bool:
 
 
 def method_signatures(definition: ast.ClassDef) -> Iterator[tuple[ast.FunctionDef, Signature]]:
-    """Yield the public methods of a class without base classes, with their parameters; not those with decorators."""
+    """Yield the public methods, without decorators, of a class without base classes, with their parameters."""
     if not is_plain(definition):
         return
     for node in definition.body:
         is_public = isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
         if isinstance(node, ast.FunctionDef) and is_public and not node.decorator_list and node.args.args:
-            yield node, _signature(node.args, first=1)
+            yield node, _make_signature(node.args, first=1)
 
 
 def signature_of(definition: ast.stmt) -> Signature | None:
     """Return the parameters of a function, or of the constructor of a class, or None if they are not certain."""
     if isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)) and not definition.decorator_list:
-        return _signature(definition.args, first=0)
+        return _make_signature(definition.args, first=0)
     if not isinstance(definition, ast.ClassDef) or definition.decorator_list or definition.keywords:
         return None
     methods = {node.name: node for node in definition.body if isinstance(node, ast.FunctionDef)}
@@ -90,12 +90,12 @@ def signature_of(definition: ast.stmt) -> Signature | None:
         return None
     if "__init__" in methods:
         is_certain = not methods["__init__"].decorator_list
-        return _signature(methods["__init__"].args, first=1) if is_certain else None
+        return _make_signature(methods["__init__"].args, first=1) if is_certain else None
     return _NONE if is_plain(definition) else None
 
 
-def parsed_signature(text: str) -> Signature | None:
-    """Return the parameters that a text in parentheses lists, or None if it does not."""
+def parse_signature(text: str) -> Signature | None:
+    """Return the parameters in a parenthesized text, or None if the text is something else."""
     try:
         (definition,) = ast.parse(f"def f{text}: ...").body
     except (SyntaxError, ValueError):
@@ -103,12 +103,12 @@ def parsed_signature(text: str) -> Signature | None:
     return signature_of(definition)
 
 
-def _signature(arguments: ast.arguments, first: int) -> Signature:
-    """Return parameters.
+def _make_signature(arguments: ast.arguments, first: int) -> Signature:
+    """Return the signature of a list of parameters.
 
     Args:
-        arguments: the parameters.
-        first: the number of the first ones that are left out, such as ``self``.
+        arguments: the syntax tree of the parameters.
+        first: the number of leading parameters to leave out, such as ``self``.
     """
     arguments = copy.deepcopy(arguments)
     for argument in ast.walk(arguments):

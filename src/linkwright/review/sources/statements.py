@@ -1,4 +1,4 @@
-"""Statements of a source with the literals in them, so that two versions of a statement can be compared."""
+"""Compare the literals in two versions of a statement."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from linkwright.review.list_changes import change_text, excerpts
-from linkwright.review.sources.tokens import Token, TokenKind, bracket_pairs, joined_tokens
+from linkwright.review.list_changes import change_text, differing_excerpts
+from linkwright.review.sources.tokens import Token, TokenKind, bracket_pairs, join_tokens
 
 _PLACE = "\0"
-"""The mark for a literal in the shape of a statement. No source has this character."""
-_WORDS = frozenset({"True", "False", "true", "false", "None", "nullptr"})
+"""The mark for a literal in the shape of a statement. Sources do not contain this character."""
+_LITERAL_WORDS = frozenset({"True", "False", "true", "false", "None", "nullptr"})
 _SWITCHES = {"True": "1", "true": "1", "False": "0", "false": "0"}
 _CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]+")
 _JOINERS = frozenset({".", "::", "->"})
@@ -26,23 +26,23 @@ _KEYWORDS = frozenset(
 _COMPARISONS = frozenset({"==", "!=", "<", ">", "<=", ">="})
 _SIGNS = frozenset({"-", "+"})
 _PROSE_WORDS = 3
-"""The number of words from which a text is a sentence for people."""
+"""The minimum number of words of a sentence for human readers."""
 _HASH = re.compile(r'"[0-9a-fA-F]{32,}"')
 _TEXTS_FOR_READERS = frozenset({"help", "description", "epilog", "doc", "metavar", "usage"})
-"""The keyword arguments whose texts only people read."""
+"""The keyword arguments whose strings are for human readers."""
 _MAX_TEMPLATE = 40
-"""The number of tokens up to which the arguments of a template are searched."""
+"""The maximum number of tokens in the arguments of a template."""
 _MAX_FIRST = 30
-"""The number of characters up to which the first argument of a call is shown, which often names the thing."""
+"""The maximum number of characters of the shown first argument of a call, which often names the thing."""
 _MAX_EXPRESSION = 60
-"""The number of characters up to which the expression around a literal is shown."""
+"""The maximum number of characters of the shown expression around a literal."""
 
 
 class Literal(NamedTuple):
     """A literal in a statement.
 
     Attributes:
-        value: the text by which versions are compared, such as a text without its quotation marks.
+        value: the text by which versions are compared, such as a string without quotation marks.
         first: the index of its first token.
         last: the index of its last token.
         constant: the text before the last name of a constant, such as ``Mode.``; a dot if there is none;
@@ -56,11 +56,11 @@ class Literal(NamedTuple):
 
     @property
     def is_text(self) -> bool:
-        """Whether the literal is a text."""
+        """Whether the literal is a string."""
         return self.value.startswith('"')
 
     def differs_from(self, other: Literal) -> bool:
-        """Return whether another literal has another value of the same kind. A constant may have any value."""
+        """Return whether two literals have different values of the same kind. A constant may have any value."""
         return self.value != other.value and self.constant == other.constant
 
 
@@ -84,9 +84,9 @@ class Statement(NamedTuple):
     """A statement of a source.
 
     Attributes:
-        tokens: the tokens.
+        tokens: the tokens of the statement.
         literals: the literals that are compared.
-        shape: the text of the statement with a mark for each of these literals.
+        shape: the text of the statement with a mark in place of each of these literals.
     """
 
     tokens: tuple[Token, ...]
@@ -95,17 +95,17 @@ class Statement(NamedTuple):
 
     @property
     def key(self) -> tuple[str, ...]:
-        """The text by which equal statements are found."""
+        """The texts by which equal statements are found."""
         return (self.shape, *(literal.value for literal in self.literals))
 
     def text(self, first: int, last: int) -> str:
-        """Return the text of the tokens from an index to another one, which is included."""
-        return joined_tokens(self.tokens[first : last + 1])
+        """Return the text of the tokens from a first to a last index, both included."""
+        return join_tokens(self.tokens[first : last + 1])
 
 
 def statement_of(tokens: Sequence[Token]) -> Statement:
-    """Return the statement that consists of tokens."""
-    literals = tuple(_literals(tokens))
+    """Return the statement that the tokens form."""
+    literals = tuple(_find_literals(tokens))
     parts: list[str] = []
     index = 0
     starts = {literal.first: literal for literal in literals}
@@ -122,8 +122,8 @@ def statement_of(tokens: Sequence[Token]) -> Statement:
     return Statement(tuple(tokens), literals, " ".join(parts))
 
 
-def _literals(tokens: Sequence[Token]) -> Iterator[Literal]:
-    """Yield the literals of a statement. Names to which a value is assigned, and keys, are none."""
+def _find_literals(tokens: Sequence[Token]) -> Iterator[Literal]:
+    """Yield the literals of a statement, except keys and assigned names."""
     index = _assigned_end(tokens)
     pairs = bracket_pairs(tokens)
     while index < len(tokens):
@@ -136,14 +136,14 @@ def _literals(tokens: Sequence[Token]) -> Iterator[Literal]:
                 tokens[index - 1].text if index else "",
                 *(token.text for token in tokens[last + 1 : last + 2]),
             )
-            is_constant = tokens[index].kind is TokenKind.WORD and tokens[index].text not in _WORDS
-            constant = joined_tokens(tokens[index:last]) or "." if is_constant else ""
-            yield Literal(_value(tokens[index : last + 1], is_divided=is_divided), index, last, constant)
+            is_constant = tokens[index].kind is TokenKind.WORD and tokens[index].text not in _LITERAL_WORDS
+            constant = join_tokens(tokens[index:last]) or "." if is_constant else ""
+            yield Literal(_normalize_literal(tokens[index : last + 1], is_divided=is_divided), index, last, constant)
         index = index + 1 if last is None else last + 1
 
 
 def _assigned_end(tokens: Sequence[Token]) -> int:
-    """Return the index of the first token behind the last assignment outside of brackets, or 0."""
+    """Return the index of the first token after the last assignment outside of brackets, or 0."""
     depth = end = 0
     for index, token in enumerate(tokens):
         if token.kind is TokenKind.OPERATOR:
@@ -154,7 +154,7 @@ def _assigned_end(tokens: Sequence[Token]) -> int:
 
 
 def _list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int | None:
-    """Return the index of the bracket that ends a list of literals, or None if no such list begins at an index."""
+    """Return the index of the closing bracket if a list of literals begins at an index, or None."""
     end = pairs.get(index, -1)
     if tokens[index].text not in ("[", "(", "{") or end < index + 2:
         return None
@@ -167,7 +167,7 @@ def _list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int
         last = _list_end(tokens, position, pairs)
         if last is None and tokens[position].kind is not TokenKind.WORD:
             last = _literal_end(tokens, position)
-        elif last is None and tokens[position].text in _WORDS:
+        elif last is None and tokens[position].text in _LITERAL_WORDS:
             last = position
         if last is None or tokens[last + 1].text not in (",", *")]}"):
             return None
@@ -178,9 +178,9 @@ def _list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int
 
 
 def _literal_end(tokens: Sequence[Token], index: int) -> int | None:
-    """Return the index of the last token of the literal that begins at an index, or None if none does."""
+    """Return the index of the last token of a literal that begins at an index, or None if there is none."""
     token = tokens[index]
-    if token.kind is TokenKind.NUMBER or token.text in _WORDS:
+    if token.kind is TokenKind.NUMBER or token.text in _LITERAL_WORDS:
         return index
     if token.kind is TokenKind.TEXT:
         if "f" in token.text[: token.text.find(token.text[-1])].lower():
@@ -200,7 +200,7 @@ def _literal_end(tokens: Sequence[Token], index: int) -> int | None:
 
 
 def _constant_end(tokens: Sequence[Token], index: int) -> int | None:
-    """Return the index of the last token of a constant such as ``Mode.FAST``, or None if none begins at an index."""
+    """Return the index of the last token of a constant such as ``Mode.FAST``, or None if there is none."""
     if tokens[index].kind is not TokenKind.WORD or tokens[index].text in _KEYWORDS:
         return None
     previous = tokens[index - 1] if index else None
@@ -225,12 +225,12 @@ def _is_key(tokens: Sequence[Token], last: int) -> bool:
 
 
 def _is_for_readers(tokens: Sequence[Token], first: int, last: int) -> bool:
-    """Return whether a literal is a text that only people read."""
+    """Return whether a literal is a string for human readers."""
     if any(token.kind is not TokenKind.TEXT for token in tokens[first : last + 1]):
         return False
     is_named = first > 1 and tokens[first - 1].text == "=" and tokens[first - 2].text in _TEXTS_FOR_READERS
     is_formatted = last + 1 < len(tokens) and tokens[last + 1].text in ("%", ".")
-    value = _value(tokens[first : last + 1])
+    value = _normalize_literal(tokens[first : last + 1])
     return (
         is_named
         or is_formatted
@@ -239,8 +239,8 @@ def _is_for_readers(tokens: Sequence[Token], first: int, last: int) -> bool:
     )
 
 
-def _value(tokens: Sequence[Token], *, is_divided: bool = False) -> str:
-    """Return a literal as it is compared: the kind of quotation marks, spaces and a last comma do not matter."""
+def _normalize_literal(tokens: Sequence[Token], *, is_divided: bool = False) -> str:
+    """Return a literal in normalized form, without the kind of quotation marks, spaces and a trailing comma."""
     parts: list[str] = []
     for index, token in enumerate(tokens):
         if token.kind is TokenKind.TEXT:
@@ -252,12 +252,12 @@ def _value(tokens: Sequence[Token], *, is_divided: bool = False) -> str:
             continue
         else:
             text = _SWITCHES.get(token.text, token.text)
-            parts.append(normal_number(text, is_divided=is_divided) if token.kind is TokenKind.NUMBER else text)
+            parts.append(normalize_number(text, is_divided=is_divided) if token.kind is TokenKind.NUMBER else text)
     return "".join(parts).replace('""', "") or '""'
 
 
-def normal_number(text: str, *, is_divided: bool) -> str:
-    """Return a number as it is compared: ``0.20`` is ``.2``, and ``1.0`` is ``1`` unless it is divided."""
+def normalize_number(text: str, *, is_divided: bool) -> str:
+    """Return a number in normalized form: ``0.20`` is ``.2``, and ``1.0`` is ``1`` unless it is divided."""
     match = re.fullmatch(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[fFlLuU]*", text.replace("'", ""))
     if match is None:
         return text.lower()
@@ -268,15 +268,15 @@ def normal_number(text: str, *, is_divided: bool) -> str:
 # --- wording --------------------------------------------------------------------------------------------------------
 
 
-def differences(old: Statement, new: Statement) -> Iterator[Difference]:
-    """Yield the literals that differ between two statements of one shape."""
+def literal_differences(old: Statement, new: Statement) -> Iterator[Difference]:
+    """Yield the literals that differ between two statements of the same shape."""
     pairs = list(zip(old.literals, new.literals, strict=True))
     brackets = bracket_pairs(new.tokens)
     changed = [pair for pair in pairs if pair[0].differs_from(pair[1])]
     index = 0
     while index < len(changed):
         (old_literal, new_literal) = changed[index]
-        start, end = _expression(new.tokens, new_literal, brackets)
+        start, end = _expression_around(new.tokens, new_literal, brackets)
         group = [pair for pair in changed[index:] if pair[1].last <= end]
         index += len(group)
         texts = (old.text(old_literal.first, old_literal.last), new.text(new_literal.first, new_literal.last))
@@ -287,9 +287,9 @@ def differences(old: Statement, new: Statement) -> Iterator[Difference]:
             expression = f"{before}{' ' if before and token.has_space else ''}{texts[0]} -> {texts[1]}"
         else:
             first, last = old_literal.first - (new_literal.first - start), group[-1][0].last + end - group[-1][1].last
-            expression = " -> ".join(excerpts(old.text(first, last), new.text(start, end)))
+            expression = " -> ".join(differing_excerpts(old.text(first, last), new.text(start, end)))
         if len(expression) > 2 * _MAX_EXPRESSION and len(group) == 1:
-            expression = " -> ".join(excerpts(*texts))
+            expression = " -> ".join(differing_excerpts(*texts))
         if len(expression) > 2 * _MAX_EXPRESSION and new_literal.last > new_literal.first and len(group) == 1:
             label = _with_context(new, start, end, "[...]", brackets)
             yield Difference(change_text(label, *map(_as_list, texts)), *texts, token)
@@ -301,8 +301,8 @@ def _as_list(text: str) -> str:
     return f"[{text.strip()[1:-1].strip().rstrip(',')}]"
 
 
-def _expression(tokens: Sequence[Token], literal: Literal, brackets: dict[int, int]) -> tuple[int, int]:
-    """Return the indices of the first and last token of the expression around a literal, within its brackets."""
+def _expression_around(tokens: Sequence[Token], literal: Literal, brackets: dict[int, int]) -> tuple[int, int]:
+    """Return the indexes of the first and last token of the expression around a literal, within its brackets."""
     start, end = literal.first, literal.last
     is_in_template = end + 1 < len(tokens) and tokens[end + 1].text == ">" and start > 0
     if is_in_template and tokens[start - 1].text in ("<", ","):
@@ -330,12 +330,12 @@ def _ends_expression(token: Token) -> bool:
 
 
 def _with_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
-    """Return a changed expression with the name that it is assigned to, or with the function that it is passed to."""
+    """Return a changed expression with the assigned name or the called function."""
     tokens = new.tokens
     before = tokens[start - 1] if start else None
     opening = next((index for index in range(start - 1, -1, -1) if brackets.get(index, -1) > end), None)
     if before is not None and before.text == ":" and opening is not None and tokens[opening].text == "{":
-        return f"{_entry(tokens, start - 1, brackets)} {expression}"
+        return f"{_entry_path(tokens, start - 1, brackets)} {expression}"
     if before is None or before.kind is TokenKind.WORD:
         word = before.text if before is not None and before.text in ("return", "case") else ""
         return f"{word} {expression}".strip()
@@ -352,25 +352,25 @@ def _with_context(new: Statement, start: int, end: int, expression: str, bracket
 def _as_argument(
     tokens: Sequence[Token], opening: int, place: tuple[int, int], expression: str, brackets: dict[int, int]
 ) -> str:
-    """Return a changed expression with the function or list in whose brackets it is."""
+    """Return a changed expression with the function or list around it."""
     name = _name_before(tokens, opening - 1, brackets)
     if not name or tokens[opening - 1].text in _KEYWORDS:
         return expression
     closing = brackets[opening]
     if tokens[opening].text == "{" and (opening, closing) == (place[0] - 1, place[1] + 1):
         return f"{name} {expression}"
-    commas = _commas(tokens, opening, place[0], brackets)
+    commas = _find_commas(tokens, opening, place[0], brackets)
     left = "..., " if commas else ""
     if commas and tokens[opening].text == "(":
-        first = joined_tokens(tokens[opening + 1 : commas[0]])
+        first = join_tokens(tokens[opening + 1 : commas[0]])
         if len(first) <= _MAX_FIRST:
             left = f"{first}, " if len(commas) == 1 else f"{first}, ..., "
     right = "" if closing == place[1] + 1 else ", ..."
     return f"{name}{tokens[opening].text}{left}{expression}{right}{tokens[closing].text}"
 
 
-def _commas(tokens: Sequence[Token], opening: int, end: int, brackets: dict[int, int]) -> list[int]:
-    """Return the indices of the commas between the arguments from an opening bracket to an index."""
+def _find_commas(tokens: Sequence[Token], opening: int, end: int, brackets: dict[int, int]) -> list[int]:
+    """Return the indexes of the commas between the arguments from an opening bracket to an index."""
     commas = []
     index = opening + 1
     while index < end:
@@ -380,8 +380,8 @@ def _commas(tokens: Sequence[Token], opening: int, end: int, brackets: dict[int,
     return commas
 
 
-def _entry(tokens: Sequence[Token], colon: int, brackets: dict[int, int]) -> str:
-    """Return the keys that lead to an entry of a dictionary, behind the name to which the dictionary is assigned."""
+def _entry_path(tokens: Sequence[Token], colon: int, brackets: dict[int, int]) -> str:
+    """Return the path of a dictionary entry: the assigned name of the dictionary and the keys."""
     keys: list[str] = []
     while True:
         key = tokens[colon - 1]
@@ -415,7 +415,7 @@ def _name_before(tokens: Sequence[Token], index: int, brackets: dict[int, int]) 
             break
         parts.insert(0, tokens[index])
         index -= 1
-    name = joined_tokens(parts)
+    name = join_tokens(parts)
     if index > 0 and tokens[index].text == ":" and tokens[index - 1].kind is TokenKind.WORD:
         name = _name_before(tokens, index - 1, brackets)  # the name before an annotation
     return name if len(name) <= _MAX_EXPRESSION else ""

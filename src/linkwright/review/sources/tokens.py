@@ -1,4 +1,4 @@
-"""The tokens of a source in C++ or Python: words, literals and operators, without comments."""
+"""Split a C++ or Python source into tokens: words, literals and operators, without comments."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ class Token(NamedTuple):
     """A token of a source.
 
     Attributes:
-        kind: the kind.
-        text: the characters.
+        kind: the kind of the token.
+        text: the characters of the token.
         start: the offset in the source.
         has_space: whether it follows a space or a comment.
     """
@@ -53,21 +53,21 @@ class Token(NamedTuple):
 
     @property
     def end(self) -> int:
-        """The offset behind the token."""
+        """The offset after the last character of the token."""
         return self.start + len(self.text)
 
 
 def python_tokens(text: str, start: int = 0, end: int | None = None) -> list[Token]:
-    """Return the tokens of a part of a source in Python."""
-    return _tokens(_PYTHON, text, start, end)
+    """Return the tokens of a part of a Python source."""
+    return _tokenize(_PYTHON, text, start, end)
 
 
 def cpp_tokens(text: str, start: int = 0, end: int | None = None) -> list[Token]:
-    """Return the tokens of a part of a source in C++. Directives of the preprocessor are read like code."""
-    return _tokens(_CPP, text, start, end)
+    """Return the tokens of a part of a C++ source. Preprocessor directives are read like code."""
+    return _tokenize(_CPP, text, start, end)
 
 
-def _tokens(pattern: re.Pattern[str], text: str, start: int, end: int | None) -> list[Token]:
+def _tokenize(pattern: re.Pattern[str], text: str, start: int, end: int | None) -> list[Token]:
     tokens = []
     has_space = True
     for match in pattern.finditer(text, start, len(text) if end is None else end):
@@ -80,14 +80,14 @@ def _tokens(pattern: re.Pattern[str], text: str, start: int, end: int | None) ->
     return tokens
 
 
-def joined_tokens(tokens: Sequence[Token]) -> str:
+def join_tokens(tokens: Sequence[Token]) -> str:
     """Return the text of tokens, with one space where the source has spaces or comments."""
     parts = [f" {token.text}" if token.has_space and index else token.text for index, token in enumerate(tokens)]
     return "".join(parts)
 
 
 def bracket_pairs(tokens: Sequence[Token]) -> dict[int, int]:
-    """Return the index of the other bracket for each bracket that has one."""
+    """Return the index of the matching bracket for each bracket that has one."""
     pairs: dict[int, int] = {}
     opened: list[int] = []
     for index, token in enumerate(tokens):

@@ -1,4 +1,4 @@
-"""The names that a source in Python binds, and those that it uses although nothing defines them."""
+"""Find the names that a Python source binds, and the undefined names that it uses."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _PYTHON_2 = frozenset(
         *("apply", "buffer", "coerce", "intern", "WindowsError", "_"),
     }
 )
-"""The builtins of Python 2, and those that other programs add."""
+"""The builtins of Python 2, and builtins that other programs add."""
 _DYNAMIC = frozenset({"globals", "exec", "execfile", "setattr", "builtins", "__builtins__", "vars"})
 """The names by which a source can define others."""
 
 
 def bound_names(tree: ast.AST) -> Iterator[str]:
-    """Yield the names that a source binds anywhere, each time that it does; ``*`` for all names of a module."""
+    """Yield a name for each place where a source binds it; ``*`` for all names of a module."""
     for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             yield node.name
@@ -49,9 +49,9 @@ def bound_names(tree: ast.AST) -> Iterator[str]:
 
 
 def undefined_names(tree: ast.AST) -> dict[str, ast.Name]:
-    """Return the first use of each name that nothing in a source certainly defines.
+    """Return the first use of each name that the source certainly does not define.
 
-    Uses in annotations, which need not be evaluated, and below ``try`` are left out.
+    Uses in annotations, which need not be evaluated, and inside ``try`` are left out.
     """
     bound = set(bound_names(tree))
     used = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
@@ -59,7 +59,7 @@ def undefined_names(tree: ast.AST) -> dict[str, ast.Name]:
     if "*" in bound or not _DYNAMIC.isdisjoint(node.id for node in used):
         return {}
     names = {name for name in names if not name.startswith("__")}
-    skipped = {id(each) for part in _uncertain_parts(tree) for each in ast.walk(part)} if names else set()
+    skipped = {id(inner) for part in _uncertain_parts(tree) for inner in ast.walk(part)} if names else set()
     found: dict[str, ast.Name] = {}
     for node in sorted(used, key=lambda node: (node.lineno, node.col_offset)):
         if node.id in names and id(node) not in skipped:
