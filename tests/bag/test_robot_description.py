@@ -98,7 +98,7 @@ async def test_bag_description_compares_hashes_without_text(record, tmp_path, ca
     assert main(["bag", "description", str(folder), str(file)]) == 0
     file.write_text(ROBOT.replace("0.1", "0.2"))
     assert main(["bag", "description", str(folder), str(file)]) == 1
-    assert "the description differs from that of the recording" in capsys.readouterr().out
+    assert "the description differs from the recorded one" in capsys.readouterr().out
 
 
 async def test_bag_description_rejects_missing_files_and_extra_arguments(record, tmp_path, capsys):

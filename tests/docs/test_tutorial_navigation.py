@@ -30,7 +30,8 @@ def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path])
             "linkwright launch my_robot_navigation navigation.launch.py": Outcome(error="the goal (-0.90, 2.40)"),
             bedroom_goal: Outcome(output_text="distance_remaining"),
             wall_goal: Outcome(output_text="ABORTED", runs_on=False),
-            "linkwright shell -- python patrol.py": Outcome(output_text="m to the bedroom"),
+            # As in ROS, Ctrl-C ends it with a traceback if it does not wait for the action at that time.
+            "linkwright shell -- python patrol.py": Outcome(output_text="m to the bedroom", may_fail=True),
             "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Outcome(output_text="stop"),
         },
     )

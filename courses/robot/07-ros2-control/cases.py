@@ -172,7 +172,7 @@ CASES = [
         "simulate",
         "the plugin of ROS 1",
         Edit(XACRO, "libgazebo_ros2_control.so", "libgazebo_ros_control.so"),
-        says="no node publishes '/joint_states'",
+        says="libgazebo_ros_control.so is the plugin of ROS 1",
     ),
     wrong(
         "simulate",

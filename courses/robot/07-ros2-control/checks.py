@@ -9,6 +9,7 @@ from linkwright.learning.checks.findings import describe_finding
 XACRO, CONTROLLERS = "urdf/mbot_control.xacro", "config/controllers.yaml"
 WHEELS = ("left_wheel_joint", "right_wheel_joint")
 MOCK, GAZEBO = "mock_components/GenericSystem", "gazebo_ros2_control/GazeboSystem"
+LIBRARY, ROS1_LIBRARY = "libgazebo_ros2_control.so", "libgazebo_ros_control.so"
 TYPES = {
     "joint_state_broadcaster": "joint_state_broadcaster/JointStateBroadcaster",
     "base_controller": "diff_drive_controller/DiffDriveController",
@@ -202,6 +203,11 @@ def hardware_is_simulated(work):
         raise NotYet(
             en=f"In control_world.launch.py, the hardware is {plugins}, but should be {GAZEBO}.",
             zh=f"在 control_world.launch.py 中，硬件是 {plugins}，应当是 {GAZEBO}。",
+        )
+    if ROS1_LIBRARY in text:
+        raise NotYet(
+            en=f"{ROS1_LIBRARY} is the plugin of ROS 1, which does not read <ros2_control>; write {LIBRARY}.",
+            zh=f"{ROS1_LIBRARY} 是 ROS 1 的插件，不读取 <ros2_control>；请写 {LIBRARY}。",
         )
 
 

@@ -11,7 +11,6 @@ from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.sdf.plugins import library_name
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 
@@ -57,7 +56,8 @@ def _is_left_over(gazebo: Element, name: str) -> bool:
 
 def _is_ros1_control(element: Element) -> bool:
     """Return whether an element is the plugin of ROS 1 that reads transmissions."""
-    return element.tag == "plugin" and library_name(element.attributes.get("filename", "")) == "gazebo_ros_control"
+    library = element.attributes.get("filename", "").strip().rpartition("/")[2]
+    return element.tag == "plugin" and library in ("libgazebo_ros_control.so", "gazebo_ros_control")
 
 
 def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
