@@ -21,7 +21,6 @@ from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.code_changes import code_change
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.names import (
-    CPP_SUFFIXES,
     PYTHON_SUFFIX,
     YES,
     Detail,
@@ -32,6 +31,7 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.package_imports import failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.reading import is_program_text, read_source_names, readable_source
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
+from linkwright.review.sources.unchanged_sources import UnchangedSources, counterpart, is_same_topic, user_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SKIPPED = frozenset({"setup.py", "conf.py"})
@@ -96,7 +96,7 @@ class _Side:
     def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
         self.version = version
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
-        self._texts: dict[str, list[str]] = {}
+        self._others: dict[str, UnchangedSources] = {}
 
     def names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
@@ -167,23 +167,32 @@ class _Side:
             return True
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
-        texts = (f'"{item.name}"', f"'{item.name}'")
-        return not any(text in content for content in self._other_texts(package) for text in texts)
+        others = self._unchanged(package)
+        return not (others.has_same(item) if item.kind in _USED else others.has_text(item.name))
+
+    def keeps(self, item: SourceName, path: str) -> bool:
+        """Return whether an unchanged source of the same package has a topic, service or action of the same kind."""
+        package = self.package(path) if item.kind in _USED else None
+        return package is not None and self._unchanged(package).has_same(item)
+
+    def user(self, item: SourceName, path: str) -> str | None:
+        """Return a source of the same package with the other end of a topic, service or action, or None."""
+        package, kind = self.package(path), counterpart(item.kind)
+        if package is None or kind is None:
+            return None
+        for other, names in self._names.items():
+            if self.package(other) == package and any(is_same_topic(item, each) for each in names.of(kind)):
+                return other
+        return self._unchanged(package).user(item)
 
     def package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None if it is in none."""
         return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
 
-    def _other_texts(self, package: str) -> list[str]:
-        """Return the texts of a package's unchanged sources, except tests and launch files."""
-        if package not in self._texts:
-            paths = self.version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), package)
-            self._texts[package] = [self.version.text(path) for path in paths if self._is_other(PurePosixPath(path))]
-        return self._texts[package]
-
-    def _is_other(self, path: PurePosixPath) -> bool:
-        is_part = TEST_FOLDERS.isdisjoint(path.parts) and not is_launch_file_name(path.name)
-        return is_part and path.as_posix() not in self._names
+    def _unchanged(self, package: str) -> UnchangedSources:
+        if package not in self._others:
+            self._others[package] = UnchangedSources(self.version, package, self._names)
+        return self._others[package]
 
     def _generates(self, name: str, path: str) -> bool:
         """Return whether a description of parameters beside a source, from which code is generated, has a parameter."""
@@ -292,13 +301,16 @@ class _Pair:
             plain = old_names.plain_classes & new_names.plain_classes if is_installed else set()
             removed = [item for item in removed if _is_of(item, plain)]
             added = [item for item in added if _is_of(item, plain)]
-        for old_item, new_item in _renamed(removed, added):
+        kept = [item for name, item in before.items() if name not in after and self.new.keeps(item, path)]
+        used = [item for name, item in after.items() if name not in before and self.old.keeps(item, old_path)]
+        for old_item, new_item in _renamed([*removed, *kept], [*added, *used]):
             text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
             is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
-            reason = None if is_same else self._reason([old_item], old_names)  # tf takes both names for the same
+            # tf takes both names for the same
+            reason = None if is_same or old_item in kept else self._rename_reason(old_item, new_item, old_names)
             yield self._change(text, new_item.span, self.new, reason)
-            removed.remove(old_item)
-            added.remove(new_item)
+            removed = [item for item in removed if item is not old_item]
+            added = [item for item in added if item is not new_item]
         yield from self._expression_changes(kind, removed, added)
         yield from self._lone_changes(kind, removed, added, old_names)
 
@@ -352,7 +364,18 @@ class _Pair:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self._is_interface(path):
             return None
-        return removal_reason(items, names, path)
+        reason = removal_reason(items, names, path)
+        users = ((item, self.new.user(item, path)) for item in (items if reason is not None else ()))
+        return next((user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
+
+    def _rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:
+        """Return why another name is breaking; that of a client is if only the old one has a server in the package."""
+        reason = self._reason([old_item], names)
+        if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
+            return reason
+        path = self.file.path
+        server = None if self.new.user(new_item, path) is not None else self.new.user(old_item, path)
+        return None if server is None else user_reason(old_item.kind, server, old_item.name)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
