@@ -52,7 +52,9 @@ _USED = (
     *(NameKind.ACTION, NameKind.ACTION_CLIENT),
 )
 """The kinds of names by which a node communicates."""
-_LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION)
+_DECLARED = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
+"""The kinds that matter to others only if they can import or include the source."""
+_LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds of which another source may have the same name for another thing."""
 
 
@@ -284,7 +286,7 @@ class _Pair:
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
         is_told = kind is NameKind.CLASS and is_python
-        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not is_told and not self._is_interface(old_path):
+        if kind in _DECLARED and not is_told and not self._is_interface(old_path):
             return
         if kind is NameKind.IMPORT:
             if None in (self.file.old_path, self.file.new_path) or not is_installed_package(
@@ -292,7 +294,7 @@ class _Pair:
             ):
                 return
             removed, added = _other_imports(removed, new_names), _other_imports(added, old_names)
-        if kind is NameKind.FUNCTION and not path.endswith(PYTHON_SUFFIX):
+        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_python:
             classes = [{item.name for item in names.of(NameKind.CLASS)} for names in (old_names, new_names)]
             removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
             added = [item for item in added if _has_class(item, classes[0] & classes[1])]
@@ -303,7 +305,10 @@ class _Pair:
             added = [item for item in added if _is_of(item, plain)]
         kept = [item for name, item in before.items() if name not in after and self.new.keeps(item, path)]
         used = [item for name, item in after.items() if name not in before and self.old.keeps(item, old_path)]
-        for old_item, new_item in _renamed([*removed, *kept], [*added, *used]):
+        pairs = _with_same_callback([*removed, *kept], [*added, *used], old_names, new_names)
+        taken = [item for pair in pairs for item in pair]
+        rest = [[item for item in items if item not in taken] for items in ([*removed, *kept], [*added, *used])]
+        for old_item, new_item in [*pairs, *_renamed(*rest)]:
             text = phrase("{kind} {old} renamed to {new}", kind=kind.title, old=_name(old_item), new=_name(new_item))
             is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
             # tf takes both names for the same
@@ -320,7 +325,7 @@ class _Pair:
         """Yield the changes of names that both versions have; those of functions only if others can call them."""
         is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
         is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
-        if kind is NameKind.FUNCTION and not is_called:
+        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_called:
             return
         if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
             yield self._merged_functions(changed)
@@ -352,7 +357,7 @@ class _Pair:
     ) -> Iterator[Change]:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
-        if added and (kind is not NameKind.FUNCTION or self.file.old_path is not None):
+        if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
             text = phrase("{kind} added: {names}", kind=kind.plural, names=_names(added))
             reason = _required_reason(added) if self.file.old_path is not None else None
             yield self._change(text, added[0].span, self.new, reason)
@@ -501,6 +506,19 @@ def _is_of(function: SourceName, classes: Collection[str]) -> bool:
     """Return whether a function of Python is a method of one of the classes, or of none."""
     class_name, _, _ = function.name.rpartition(".")
     return not class_name or class_name in classes
+
+
+def _with_same_callback(
+    removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames, new_names: SourceNames
+) -> list[tuple[SourceName, SourceName]]:
+    """Return the removed and added names whose messages, requests or goals call the same function."""
+    old, new = (
+        {(kind, name): function for function, (kind, name) in names.callbacks.items()}
+        for names in (old_names, new_names)
+    )
+    functions = {function: item for item in added if (function := new.get((item.kind, item.name))) is not None}
+    pairs = ((item, functions.get(old.get((item.kind, item.name), ""))) for item in removed)
+    return [(item, other) for item, other in pairs if other is not None]
 
 
 def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:

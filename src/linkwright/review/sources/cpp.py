@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_functions
+from linkwright.review.sources.cpp_callbacks import message_type
+from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_functions, declared_members
 from linkwright.review.sources.cpp_members import header_texts, made_members
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 
@@ -148,6 +150,9 @@ class _Reader:
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
+        for member in declared_members(self._text):
+            end = member.start + len(member.name.rpartition("::")[2])
+            self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
 
     def _read_call(self, match: re.Match[str]) -> None:
         text, function = self._text, match["name"]
@@ -203,6 +208,8 @@ class _Reader:
             details.append((Detail.QUEUE if function in _ROS1 else Detail.QOS, " ".join(others[0].split())))
         if kind is NameKind.PUBLISHER and function in _ROS1 and others[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))
+        if kind is NameKind.SUBSCRIPTION and not type_name:
+            type_name = self._callback_type(arguments)
         name = self._value(*found) or ""
         if namespace and name and not name.startswith(("/", "~")):
             name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
@@ -216,6 +223,18 @@ class _Reader:
         functions = set(_POINTER.findall(text))
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
+
+    def _callback_type(self, arguments: list[tuple[int, int]]) -> str:
+        """Return the type of the messages that the only callback among the arguments takes, or an empty text."""
+        functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
+        words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[2:3])
+        functions = functions or {word for word in words if word.isidentifier()}
+        return message_type(functions.pop(), [self._text, *self._headers]) if len(functions) == 1 else ""
+
+    @cached_property
+    def _headers(self) -> list[str]:
+        """The headers that may declare members of the classes of the source, without comments."""
+        return [_COMMENT_OR_TEXT.sub(_without_comment, text) for text in header_texts(Path(self._source.name))]
 
     def _default(self, function: str, arguments: list[tuple[int, int]]) -> str:
         """Return the literal default of a parameter; that of a function that returns the value is the second."""
@@ -234,8 +253,7 @@ class _Reader:
 
     def _read_members(self) -> None:
         """Add the topics and actions that members of a class, or variables, are made with."""
-        headers = [_COMMENT_OR_TEXT.sub(_without_comment, text) for text in header_texts(Path(self._source.name))]
-        for member in made_members(self._text, headers):
+        for member in made_members(self._text, self._headers):
             for begin, end in list(_arguments(self._text, member.start))[:3]:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break

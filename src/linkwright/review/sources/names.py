@@ -36,6 +36,7 @@ class NameKind(Enum):
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     CLASS = (phrase("class"), phrase("classes"))
     FUNCTION = (phrase("function"), phrase("functions"))
+    MEMBER = (phrase("public member"), phrase("public members"))
     RECONFIGURATION = (phrase("server of dynamic_reconfigure"), phrase("servers of dynamic_reconfigure"))
     ROUTE = (phrase("web route"), phrase("web routes"))
     WEB_EVENT = (phrase("event of Socket.IO"), phrase("events of Socket.IO"))
