@@ -55,7 +55,12 @@ from linkwright.review.launches.helpers import makes_actions
 from linkwright.review.lost_controllers import lost_controllers
 from linkwright.review.lost_data import lost_data
 from linkwright.review.lost_files import lost_files
-from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
+from linkwright.review.notes import (
+    is_unreadable_as_before,
+    missing_notes,
+    unreadable_notes,
+    without_equal_problems,
+)
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import lost_references
@@ -155,6 +160,7 @@ class _Reviewer:
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         all_subjects = with_renamed_folders(self._versions, all_subjects)
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
+        shown, equal_notes = without_equal_problems([each for each in all_subjects if each not in untouched])
         compared = {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
         reported |= {path for path in compared if not is_template(path)}
         reported |= self._maps.keys()
@@ -164,11 +170,15 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            grouped_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
+            grouped_meshes([subject for subject in shown if not subject.is_empty]),
             [file.path for file in other_files],
             {**file_states(self._versions, other_files), **moved},
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
-            list(dict.fromkeys([*notes, *self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
+            list(
+                dict.fromkeys(
+                    [*notes, *self._notes(), *missing_notes(all_subjects), *equal_notes, *unreadable_notes(untouched)]
+                )
+            ),
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
