@@ -70,6 +70,7 @@ from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.robots.semantics import semantic_files
 from linkwright.review.sources.callers import broken_callers
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.lost_types import lost_types
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -196,6 +197,7 @@ class _Reviewer:
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         result = _with_changes(result, broken_callers(self._versions, self._changed_files))
+        result = _with_changes(result, lost_types(self._versions, self._changed_files))
         result = _with_changes(result, lost_controllers(self._versions, self._changed_files))
         result = _with_changes(result, lost_data(self._versions, self._changed_files))
         return sorted(result, key=lambda subject: subject.path)
