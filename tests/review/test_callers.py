@@ -169,3 +169,29 @@ def test_methods_of_an_installed_class_are_told(repository, compare, old, new, e
     result = compare(repository)
     assert sentences(subject(result, "arm/arm/plans.py")) == [expected]
     assert bool(breaking(result)) is is_breaking
+
+
+SELF_CALLER = """class Arm:
+    def step(self):
+        self.move()
+
+    def move(self):
+        pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "other_text", "is_breaking"),
+    [
+        ("class Arm:", "class Arm:", True),
+        ("class Arm:", "class Arm(Base):", False),
+        ("self.move()", "try: self.move()\n        except E: pass", False),
+        ("    def step", "    move = None\n\n    def step", False),
+    ],
+)
+def test_a_class_that_calls_a_removed_method_of_itself_fails(repository, compare, text, other_text, is_breaking):
+    source = SELF_CALLER.replace(text, other_text)
+    repository.commit({"scripts/arm.py": source})
+    repository.write({"scripts/arm.py": source.replace("def move", "def go")})
+    found = ["calls its method 'move', which nothing defines any more"] if is_breaking else []
+    assert breaking(compare(repository)) == found

@@ -444,11 +444,15 @@ class _Pair:
                 yield self._change(text, span, self.new, phrase("the package cannot be imported once it is installed"))
 
     def _undefined_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the names that are still used, but not defined or imported any more."""
+        """Yield the names and methods that are still used, but not defined or imported any more."""
         for name, span in new_names.undefined.items() if self.file.old_path is not None else ():
             if name in old_names.bound:
                 text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
                 yield self._change(text, span, self.new, phrase("the code that uses the name fails"))
+        for name, span in new_names.undefined_methods.items():
+            if name in old_names.attributes:
+                text = phrase("calls its method '{name}', which nothing defines any more", name=name)
+                yield self._change(text, span, self.new, phrase("the call fails"))
 
     @staticmethod
     def _change(text: Phrase, span: Span, side: _Side, reason: Phrase | None) -> Change:

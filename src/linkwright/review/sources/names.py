@@ -105,6 +105,9 @@ class SourceNames:
         plain_classes: the classes of a source in Python that certainly have no methods besides those in their bodies.
         bound: the names that a source in Python 3 defines or imports.
         undefined: the names that a source uses although nothing defines them, each with the location of its first use.
+        attributes: the attributes that a source in Python 3 defines in classes or assigns to objects.
+        undefined_methods: the methods that classes of a source call on themselves although nothing defines them, each
+            with the location of its first call.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
@@ -120,6 +123,8 @@ class SourceNames:
     plain_classes: set[str] = field(default_factory=set)
     bound: frozenset[str] = frozenset()
     undefined: dict[str, Span] = field(default_factory=dict)
+    attributes: frozenset[str] = frozenset()
+    undefined_methods: dict[str, Span] = field(default_factory=dict)
     has_star: bool = False
 
     def add(self, name: SourceName) -> None:
