@@ -52,6 +52,7 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, with_other_formats
 from linkwright.review.launches.helpers import makes_actions
+from linkwright.review.launches.script_callers import lost_arguments
 from linkwright.review.lost_controllers import lost_controllers
 from linkwright.review.lost_data import lost_data
 from linkwright.review.lost_files import lost_files
@@ -197,6 +198,7 @@ class _Reviewer:
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         result = _with_changes(result, broken_callers(self._versions, self._changed_files))
+        result = _with_changes(result, lost_arguments(self._versions, self._changed_files))
         result = _with_changes(result, lost_types(self._versions, self._changed_files))
         result = _with_changes(result, lost_controllers(self._versions, self._changed_files))
         result = _with_changes(result, lost_data(self._versions, self._changed_files))
