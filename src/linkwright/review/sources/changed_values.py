@@ -14,9 +14,14 @@ from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python_statements import python_statements
 from linkwright.review.sources.reading import readable_source
 from linkwright.review.sources.statements import Difference, Literal, Statement, differences
+from linkwright.review.sources.tokens import TokenKind
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
+_ALIKE = 0.6
+"""The ratio of equal tokens from which two statements with other tokens are versions of one statement."""
+_COUNTERS = frozenset({"0", "1"})
+"""Numbers that also change with the form of a statement, such as in ``i + 1``."""
 _MAX_COMPARED = 4_000_000
 """The number of pairs of statements up to which the statements of a function are compared."""
 
@@ -43,7 +48,7 @@ def value_changes(old_path: Path, new_path: Path, told: Sequence[str]) -> Iterat
         items = [
             item
             for pair in _pairs(old.get(name, []), statements)
-            for item in differences(*pair)
+            for item in (differences(*pair) if pair[0].shape == pair[1].shape else _number_change(*pair))
             if not _is_told(item, told) and not _is_renamed(item, old_source.text, new_source.text)
         ]
         if items:
@@ -55,9 +60,10 @@ def value_changes(old_path: Path, new_path: Path, told: Sequence[str]) -> Iterat
 
 
 def _pairs(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
-    """Yield the statements of a function in which only literals differ.
+    """Yield the statements of a function in which only literals differ, and those that are alike.
 
-    Between two equal statements, the statements of one shape are pairs if both versions have equally many.
+    Between two equal statements, the statements of one shape are pairs if both versions have equally many, and so are
+    the others.
     """
     if len(old) * len(new) > _MAX_COMPARED:
         return
@@ -68,12 +74,38 @@ def _pairs(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple
         if tag != "replace":
             continue
         shapes = dict.fromkeys(statement.shape for statement in new[new_start:new_end])
+        old_shapes = {statement.shape for statement in old[old_start:old_end]}
+        lone = (
+            [statement for statement in old[old_start:old_end] if statement.shape not in shapes],
+            [statement for statement in new[new_start:new_end] if statement.shape not in old_shapes],
+        )
+        if len(lone[0]) == len(lone[1]):
+            yield from zip(*lone, strict=True)
         for shape in shapes:
             before = [statement for statement in old[old_start:old_end] if statement.shape == shape]
             after = [statement for statement in new[new_start:new_end] if statement.shape == shape]
             pairs = list(zip(before, after, strict=False))
             if len(before) == len(after) and not _are_reordered(pairs):
                 yield from (pair for pair in pairs if _is_same(*pair))
+
+
+def _number_change(old: Statement, new: Statement) -> Iterator[Difference]:
+    """Yield the number that is another one in a statement that also differs in another way, if it is the only one."""
+    numbers = [
+        [token for token in each.tokens if token.kind is TokenKind.NUMBER and token.text not in _COUNTERS]
+        for each in (old, new)
+    ]
+    texts = [[token.text for token in each] for each in numbers]
+    pairs = {(before, after) for before, after in zip(*texts, strict=False) if before != after}
+    if len(texts[0]) != len(texts[1]) or len(pairs) != 1:
+        return
+    ((before, after),) = pairs
+    old_words, new_words = (
+        [token.text for token in each.tokens if token.kind is not TokenKind.NUMBER] for each in (old, new)
+    )
+    if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _ALIKE:
+        token = next(token for token in numbers[1] if token.text == after)
+        yield Difference(f"{before} -> {after}", before, after, token)
 
 
 def _changed(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:
