@@ -16,10 +16,12 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
+from linkwright.review.sources.callbacks import with_same_callback
 from linkwright.review.sources.changed_values import value_changes
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.code_changes import code_change
 from linkwright.review.sources.details import detail_changes
+from linkwright.review.sources.name_patterns import pattern_of
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
     YES,
@@ -305,7 +307,7 @@ class _Pair:
             added = [item for item in added if _is_of(item, plain)]
         kept = [item for name, item in before.items() if name not in after and self.new.keeps(item, path)]
         used = [item for name, item in after.items() if name not in before and self.old.keeps(item, old_path)]
-        pairs = _with_same_callback([*removed, *kept], [*added, *used], old_names, new_names)
+        pairs = with_same_callback([*removed, *kept], [*added, *used], old_names, new_names)
         taken = [item for pair in pairs for item in pair]
         rest = [[item for item in items if item not in taken] for items in ([*removed, *kept], [*added, *used])]
         for old_item, new_item in [*pairs, *_renamed(*rest)]:
@@ -392,11 +394,14 @@ class _Pair:
         sides = [[item for item in names.expressions if item.kind is kind] for names in (old_names, new_names)]
         gone = [item for item in sides[0] if all(item.name != other.name for other in sides[1])]
         come = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
-        for item in list(gone):  # another name for the same thing
-            other = next((each for each in come if each.type == item.type), None)
-            if other is not None:
+        yield from self._expression_types(*sides)
+        for item in list(gone):  # another expression for the same thing
+            same = [each for each in come if each.type == item.type]
+            if same:
+                other = max(same, key=lambda each: _similarity(item, each))
                 gone.remove(item)
                 come.remove(other)
+                yield from self._changed_pattern(item, other)
         for item, other in _take_pairs(removed, come):
             text = phrase(
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name(item), new=other.name
@@ -415,6 +420,24 @@ class _Pair:
             text = phrase("{kind} with computed names removed: {names}", kind=kind.plural, names=_names(gone))
             yield self._change(text, gone[0].span, self.old, None)
             added.clear()
+
+    def _expression_types(self, old: Sequence[SourceName], new: Sequence[SourceName]) -> Iterator[Change]:
+        """Yield the names with the same expression but another type, if only one name has the expression."""
+        for item in new:
+            same = [[each for each in items if each.name == item.name] for items in (old, new)]
+            if len(same[0]) == len(same[1]) == 1 and same[0][0].type != item.type and same[0][0].type and item.type:
+                ((_, text, reason),) = ((item, *each) for each in detail_changes(same[0][0], item))
+                yield self._change(text, item.span, self.new, reason)
+
+    def _changed_pattern(self, old: SourceName, new: SourceName) -> Iterator[Change]:
+        """Yield the change of the texts in an expression for a name."""
+        patterns = pattern_of(old.name), pattern_of(new.name)
+        if None in patterns or patterns[0] == patterns[1]:
+            return
+        text = phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=_name(old), new=_name(new))
+        reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
+        is_lost = self._reason([old], self.old.names(self.file.old_path)) is not None
+        yield self._change(text, new.span, self.new, reason if is_lost else None)
 
     def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the rates and periods that differ, if both versions have equally many, and those of a new node."""
@@ -510,19 +533,6 @@ def _is_of(function: SourceName, classes: Collection[str]) -> bool:
     """Return whether a function of Python is a method of one of the classes, or of none."""
     class_name, _, _ = function.name.rpartition(".")
     return not class_name or class_name in classes
-
-
-def _with_same_callback(
-    removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames, new_names: SourceNames
-) -> list[tuple[SourceName, SourceName]]:
-    """Return the removed and added names whose messages, requests or goals call the same function."""
-    old, new = (
-        {(kind, name): function for function, (kind, name) in names.callbacks.items()}
-        for names in (old_names, new_names)
-    )
-    functions = {function: item for item in added if (function := new.get((item.kind, item.name))) is not None}
-    pairs = ((item, functions.get(old.get((item.kind, item.name), ""))) for item in removed)
-    return [(item, other) for item, other in pairs if other is not None]
 
 
 def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:

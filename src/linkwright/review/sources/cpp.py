@@ -11,6 +11,7 @@ from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.cpp_callbacks import message_type
 from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_functions, declared_members
 from linkwright.review.sources.cpp_members import header_texts, made_members
+from linkwright.review.sources.name_patterns import format_of
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
@@ -48,6 +49,7 @@ _ROS1 = frozenset(
     }
 )
 """The methods whose names other libraries have, too, so that only literal names count."""
+_COMMUNICATION = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
 _NODE_FIRST = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
 _OUTPUTS = frozenset({"getParam", "getParamCached", "get"})
@@ -178,6 +180,8 @@ class _Reader:
                 self._add_literal(kind, begin, end)
             return
         named = arguments[1:2] if function in _NODE_FIRST else arguments[:1]
+        if named and kind in _COMMUNICATION and self._add_formatted(kind, type_name, *named[0]):
+            return
         candidates = arguments if is_action else named
         found = next(((begin, end) for begin, end in candidates if self._value(begin, end) is not None), None)
         if found is not None:
@@ -188,6 +192,15 @@ class _Reader:
             begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
             expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._span(begin, end))
             self._names.expressions.append(expression)
+
+    def _add_formatted(self, kind: NameKind, type_name: str, begin: int, end: int) -> bool:
+        """Add the pattern of a name that a call of ``snprintf`` writes, and return whether there is one."""
+        variable = _VARIABLE.fullmatch(self._text[begin:end])
+        pattern = None if variable is None else format_of(self._text[:begin], variable["name"])
+        if pattern is None:
+            return False
+        self._names.expressions.append(SourceName(kind, pattern, type_name, self._span(begin, end)))
+        return True
 
     def _add_called(
         self,
