@@ -208,7 +208,8 @@ def test_names_that_are_patterns_are_compared(repository, compare, path, text, o
     assert breaking(compare(repository)) == [expected]
 
 
-def test_another_variable_in_a_pattern_is_no_other_name(repository, compare):
+@pytest.mark.parametrize("value", ["prefix", "self.get('name').value"])
+def test_another_value_in_a_pattern_is_no_other_name(repository, compare, value):
     repository.commit({"arm/a.py": PATTERN})
-    repository.write({"arm/a.py": PATTERN.replace("name", "prefix")})
+    repository.write({"arm/a.py": PATTERN.replace("{name}", f"{{{value}}}")})
     assert breaking(compare(repository)) == []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 _TEXT = re.compile(r"\"(?P<double>(?:\\.|[^\"\\])*)\"|'(?P<single>(?:\\.|[^'\\])*)'")
+_FORMATTED = re.compile(r"\b[fF][rR]?[\"']|\b[rR][fF][\"']")
 _PLACE = re.compile(r"\{[^{}]*\}|%[-+ #0]*\d*(?:\.\d+)?[hlzjt]*[a-zA-Z]|%\(\w+\)[a-z]")
 _OPEN = "{}"
 """The mark for a part of a pattern whose value is not known."""
@@ -16,6 +17,8 @@ def pattern_of(expression: str) -> str | None:
     Args:
         expression: the expression that gives a name, in Python or C++.
     """
+    if _FORMATTED.search(expression):
+        expression = re.sub(r"\{[^{}]*\}", _OPEN, expression)  # its parts may have texts of their own
     texts = [match["double"] if match["single"] is None else match["single"] for match in _TEXT.finditer(expression)]
     pattern = _OPEN.join(_PLACE.sub(_OPEN, text) for text in texts)
     return pattern if re.search(r"\w", pattern.replace(_OPEN, "")) else None
