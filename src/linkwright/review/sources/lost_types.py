@@ -75,7 +75,7 @@ def _lost(versions: Versions, file: ChangedFile) -> list[str]:
 
 
 def _including(texts: Mapping[str, str], header: str) -> list[str]:
-    """Return the paths of a header and of the files that include it, also through other headers."""
+    """Return the paths of the files that include a header, also through other headers."""
     found = [header]
     for included in found:
         name = PurePosixPath(included).name
@@ -83,7 +83,7 @@ def _including(texts: Mapping[str, str], header: str) -> list[str]:
             is_new = path not in found and name in text
             if is_new and any(_ends_with(included, match["path"]) for match in _INCLUDE.finditer(text)):
                 found.append(path)
-    return [path for path in found if path in texts]
+    return found[1:]
 
 
 def _ends_with(path: str, included: str) -> bool:
