@@ -14,6 +14,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.package_imports import PACKAGE_FILE
 from linkwright.review.sources.python import parsed_source
+from linkwright.review.sources.python_objects import FailingCall, ModuleClasses, classes_of, failing_calls
 from linkwright.review.sources.reading import readable_source
 from linkwright.review.sources.signatures import Signature, signature_of
 from linkwright.review.sources.undefined_names import bound_names
@@ -57,9 +58,10 @@ class _Lost:
 def broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that import a name which their module no longer has, or call it with arguments that do not fit.
 
-    Modules are those of the repository, and are found if only one file can be meant. Methods of objects are not
-    followed.
+    Modules are those of the repository, and are found if only one file can be meant. Of the methods of objects, those
+    are followed whose class is certain.
     """
+    yield from _failing_methods(versions, changed_files)
     lost = [each for file in changed_files if (each := _lost(versions, file)) is not None]
     if not lost:
         return
@@ -73,6 +75,42 @@ def broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
         for each in candidates:
             if each.path != path:
                 yield from ((path, change) for change in _Caller(files, path, tree, each).changes())
+
+
+def _failing_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the files that newly call a method which an object does not have: the file or the class changed."""
+    changed = [file.new_path for file in changed_files if file.new_path and file.new_path.endswith(PYTHON_SUFFIX)]
+    if not changed:
+        return
+    files = {version: _Files(version, ()) for version in (versions.old, versions.new)}
+    old_paths = {file.new_path: file.old_path for file in changed_files}
+    for path in files[versions.new].paths:
+        text = versions.new.text(path)
+        if path not in changed and not any(_module_word(module) in text for module in changed):
+            continue
+        new = list(_failing_calls(files[versions.new], path))
+        old_path = old_paths.get(path, path)
+        old = {each[:3] for each in _failing_calls(files[versions.old], old_path)} if new and old_path else set()
+        for call in {each.method: each for each in reversed(new) if each[:3] not in old}.values():
+            text_of_change = phrase(
+                "calls the method '{name}', which '{class_name}' in '{file}' does not have",
+                name=call.method,
+                class_name=call.class_name,
+                file=call.path,
+            )
+            location = Location(path, call.node.lineno, call.node.col_offset + 1)
+            yield path, Change(text_of_change, Effect.BREAKING, phrase("the call fails"), location)
+
+
+def _failing_calls(files: _Files, path: str) -> Iterator[FailingCall]:
+    tree = _tree(files.version, path)
+
+    def module(name: str, level: int) -> ModuleClasses | None:
+        module_path = files.module(path, name, level)
+        module_tree = None if module_path is None else _tree(files.version, module_path)
+        return None if module_path is None or module_tree is None else classes_of(module_path, module_tree)
+
+    return iter(()) if tree is None else failing_calls(tree, module)
 
 
 def _lost(versions: Versions, file: ChangedFile) -> _Lost | None:
@@ -137,6 +175,7 @@ class _Files:
         paths = version.paths((PYTHON_SUFFIX,))
         self.paths = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
         self._gone = gone
+        self.version = version
 
     @cached_property
     def _known(self) -> frozenset[str]:
