@@ -382,3 +382,30 @@ def test_all_conditions_of_a_dependency_are_compared(repository, compare):
         "environment variable 'SIMULATOR' does not decide any more what is built",
     ]
     assert breaking_ones == found[1:]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("find_packages(exclude=['test'])", "['arm', 'arm.tools']", []),
+        ("find_packages()", "find_packages(exclude=['arm.tools'])", ["installed Python modules removed: 'arm.tools'"]),
+        ("find_packages('src')", "['arm']",
+         ["installed Python modules removed: 'arm.tools'", "packages removed: find_packages('src')"]),
+    ],
+)  # fmt: skip
+def test_found_packages_are_compared_by_their_names(repository, compare, old, new, expected):
+    files = {"arm/package.xml": PACKAGE_XML, "arm/arm/__init__.py": "", "arm/arm/tools/__init__.py": ""}
+    setup = "from setuptools import find_packages, setup\nsetup(name='arm', packages=%s)\n"
+    repository.commit({**files, "arm/setup.py": setup % old})
+    repository.write({"arm/setup.py": setup % new})
+    result = compare(repository)
+    found = [sentence for each in result.subjects if each.path == "arm/setup.py" for sentence in sentences(each)]
+    assert found == expected
+
+
+def test_an_executable_that_leaves_path_is_found_by_launch_files(repository, compare):
+    text = "project(arm)\nadd_executable(driver driver.cpp)\ninstall(TARGETS driver DESTINATION %s)\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/CMakeLists.txt": text % "bin"})
+    repository.write({"arm/CMakeLists.txt": text % "lib/arm"})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "commands that find it through PATH fail; launch files find it only now"

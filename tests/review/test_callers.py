@@ -169,3 +169,75 @@ def test_methods_of_an_installed_class_are_told(repository, compare, old, new, e
     result = compare(repository)
     assert sentences(subject(result, "arm/arm/plans.py")) == [expected]
     assert bool(breaking(result)) is is_breaking
+
+
+SELF_CALLER = """class Arm:
+    def step(self):
+        self.move()
+
+    def move(self):
+        pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "other_text", "is_breaking"),
+    [
+        ("class Arm:", "class Arm:", True),
+        ("class Arm:", "class Arm(Base):", False),
+        ("self.move()", "try: self.move()\n        except E: pass", False),
+        ("    def step", "    move = None\n\n    def step", False),
+    ],
+)
+def test_a_class_that_calls_a_removed_method_of_itself_fails(repository, compare, text, other_text, is_breaking):
+    source = SELF_CALLER.replace(text, other_text)
+    repository.commit({"scripts/arm.py": source})
+    repository.write({"scripts/arm.py": source.replace("def move", "def go")})
+    found = ["calls its method 'move', which nothing defines any more"] if is_breaking else []
+    assert breaking(compare(repository)) == found
+
+
+ROBOT = """class Robot:
+    def __init__(self, ip):
+        self.ip = ip
+
+    def read_position(self):
+        pass
+"""
+USER = """from arm.robot import Robot
+
+
+class Node:
+    def __init__(self):
+        self.bot = Robot("1")
+
+    def step(self):
+        self.bot.read_position()
+        self.bot.ip.strip()
+"""
+OBJECT_FILES = {"arm/package.xml": FILES["arm/package.xml"], "arm/arm/__init__.py": "", "arm/arm/robot.py": ROBOT}
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "is_breaking"),
+    [
+        ("node.py", "read_position()", "read_pose()", True),
+        ("robot.py", "def read_position", "def read_pose", True),
+        ("robot.py", "class Robot:", "class Robot(Base):", False),
+        ("node.py", 'Robot("1")', 'Robot("1") if a else Other()', False),
+    ],
+)
+def test_a_method_that_the_class_of_an_object_lacks_is_breaking(repository, compare, path, old, new, is_breaking):
+    repository.commit({**OBJECT_FILES, "arm/arm/node.py": USER})
+    text = {"node.py": USER, "robot.py": ROBOT}[path].replace(old, new)
+    text = text if is_breaking else text.replace("read_position", "read_pose")
+    repository.write({f"arm/arm/{path}": text})
+    name = "read_pose" if path == "node.py" else "read_position"
+    sentence = f"calls the method '{name}', which 'Robot' in 'arm/arm/robot.py' does not have"
+    assert (sentence in breaking(compare(repository))) == is_breaking
+
+
+def test_a_method_that_was_missing_before_is_not_new(repository, compare):
+    repository.commit({**OBJECT_FILES, "arm/arm/node.py": USER.replace("read_position", "read_pose")})
+    repository.write({"arm/arm/node.py": USER.replace("read_position", "read_pose").replace('"1"', '"2"')})
+    assert breaking(compare(repository)) == []

@@ -196,3 +196,16 @@ def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new
     (problem,) = subject.problems
     assert str(problem.text) == f"the {expected} version has a syntax error in line 3; its names are not known"
     assert problem.is_of_old is not is_new
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("if cost >= 253 and self.mode", "if cost > 254 and self.mode", "values in Rover.drive: 253 -> 254"),
+        ("z_offset=0.30, name", "z_offset=0.35, side=True, name", "values in Rover.drive: 0.30 -> 0.35"),
+        ("z_offset=0.30, name='drill'", "z_offset=0.35, size=4, name='drill'", "code changed in 'Rover.drive()'"),
+        ("add_tool(z_offset=0.30, name='drill')", "drop(0.5)", "code changed in 'Rover.drive()'"),
+    ],
+)
+def test_the_only_number_that_changes_with_the_form_of_a_statement_is_told(lines, old, new, expected):
+    assert lines("rover/scripts/drive.py", PYTHON, old, new) == [expected]

@@ -48,3 +48,20 @@ def test_joined_path_has_one_slash(changes_of, start):
 def test_later_absolute_path_replaces_those_before_it(changes_of):
     changes, _ = changes_of("arm.launch.py", FILE, '"config/arm.yaml"', '"/etc/arm.yaml"')
     assert changes == ["node 'arm/driver': parameters [$(find-pkg-share arm)/config/arm.yaml] -> [/etc/arm.yaml]"]
+
+
+@pytest.mark.parametrize(
+    ("expression", "is_same"),
+    [
+        ("$(eval ((1 if arg('a') else 2)))", True),
+        ("$(eval 1 if  arg('a')\n else 2)", True),
+        ("$(eval 1 if arg('a') else 3)", False),
+        ("$(eval 1 if arg(' a') else 2)", False),
+    ],
+)
+def test_layout_of_an_expression_is_no_change(changes_of, expression, is_same):
+    old = "$(eval ( (1 if arg('a') else 2)))"
+    arguments = f'<arg name="a" default="x"/><arg name="b" value="{old}"/>'
+    text = f'<launch>{arguments}<param name="q" value="$(arg b)"/></launch>'
+    changes, _ = changes_of("arm.launch", text, old, expression)
+    assert (changes == []) == is_same

@@ -43,3 +43,14 @@ def test_side_of_a_nodelet_is_that_of_its_class(changes_of):
     node = '<node pkg="nodelet" type="nodelet" name="n" args="load depthimage_to_laserscan/Nodelet manager">'
     text = f'<launch>{node}<remap from="image" to="depth/image_raw"/></node></launch>'
     assert changes_of("arm.launch", text, "depth/image_raw", "other/image_raw")[1] == []
+
+
+def test_remapping_of_a_name_that_is_new_in_the_node_breaks_nobody(repository, compare):
+    remap = '<remap from="~goal" to="/base/x"/>'
+    text = f'<launch><node pkg="arm" type="n.py" name="n">{remap}</node></launch>'
+    source = SOURCE.replace('pub = rospy.Publisher("goal", Goal)\n', "")
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": source}
+    repository.commit({**files, "arm/launch/arm.launch": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch": text, "arm/scripts/n.py": SOURCE})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert change.reason is None

@@ -173,3 +173,43 @@ def test_topics_of_a_new_node_are_listed_although_another_node_has_them(reposito
     found = sentences(subject(compare(repository), "a/scripts/second.py"))
     assert "publishers added: 'state' (String)" in found
     assert "subscriptions added: 'enable' (Bool)" in found
+
+
+FORMATTED = """void A::start() {
+  char name[] = "in00";
+  for (int i = 0; i < 4; i++) { snprintf(name, sizeof(name), "in%02d", i); a = nh.advertise<m::State>(name, 1); }
+  for (int i = 0; i < 4; i++) { snprintf(name, sizeof(name), "out%02d", i); b = nh.advertise<m::State>(name, 1); }
+}
+"""
+PATTERN = """import rclpy
+
+
+class Node(Base):
+    def start(self, name):
+        self.create_service(Trigger, f"{name}/go", self.go)
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "old", "new", "expected"),
+    [
+        ("arm/src/a.cpp", FORMATTED, "out%02d", "exit%02d",
+         """publisher '"out%02d"' (State) renamed to '"exit%02d"' (State)"""),
+        ("arm/src/a.cpp", FORMATTED, "in%02d", "inner%02d",
+         """publisher '"in%02d"' (State) renamed to '"inner%02d"' (State)"""),
+        ("arm/a.py", PATTERN, "{name}/go", "{name}/drive",
+         "service 'f'{name}/go'' (Trigger) renamed to 'f'{name}/drive'' (Trigger)"),
+        ("arm/a.py", PATTERN, "Trigger", "SetBool", "service 'f'{name}/go'': type Trigger -> SetBool"),
+    ],
+)  # fmt: skip
+def test_names_that_are_patterns_are_compared(repository, compare, path, text, old, new, expected):
+    repository.commit({"arm/package.xml": FILES["arm/package.xml"], path: text})
+    repository.write({path: text.replace(old, new)})
+    assert breaking(compare(repository)) == [expected]
+
+
+@pytest.mark.parametrize("value", ["prefix", "self.get('name').value"])
+def test_another_value_in_a_pattern_is_no_other_name(repository, compare, value):
+    repository.commit({"arm/a.py": PATTERN})
+    repository.write({"arm/a.py": PATTERN.replace("{name}", f"{{{value}}}")})
+    assert breaking(compare(repository)) == []

@@ -147,3 +147,20 @@ def test_semantic_description_that_xacro_refuses_is_breaking(calls, compare):
     (change,) = subject(result, CALLED).changes
     assert str(change.sentence).startswith("cannot be read any more: arm_description/config/macros.xacro:2: ")
     assert change.reason is not None
+
+
+@pytest.mark.parametrize("start", ["<!-- made by the assistant -->\n", "\n", "  "])
+def test_a_semantic_description_is_read_as_moveit_does(repository, compare, start):
+    repository.commit({PATH: start + SRDF})
+    repository.write({PATH: start + SRDF.replace('value="0"', 'value="1.5"')})
+    assert sentences(subject(compare(repository), PATH)) == ["group_state 'manipulator/home': upper_joint 0 -> 1.5"]
+
+
+def test_files_that_cannot_be_read_for_the_same_reason_are_one_note(repository, compare):
+    paths = [PATH.replace("arm.srdf", f"{name}.srdf") for name in ("a", "b", "c")]
+    repository.commit(dict.fromkeys(paths, SRDF.replace("</robot>", "</robots>")))
+    repository.write(dict.fromkeys(paths, SRDF.replace("</robot>", "</robots>").replace('"0"', '"1"')))
+    result = compare(repository)
+    assert result.subjects == []
+    (note,) = result.notes
+    assert str(note).startswith(f"3 changed files are not compared, such as '{paths[0]}': neither version can be read")

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.review.sources.cpp_members import header_texts
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking, sentences
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 TIMER = "import rospy\nrospy.init_node('arm')\n"
@@ -93,3 +93,76 @@ def test_headers_outside_of_the_package_are_not_read(tmp_path, include):
     path = include.format(outside=tmp_path)
     source.write_text(f'#include "{path}"\nArm::Arm() : server_(nh_, "reach", f, false) {{}}\n')
     assert header_texts(source) == []
+
+
+POINT_HEADER = """#pragma once
+namespace m {
+class Link {
+public:
+  Link() {}
+  double center;
+  double step{0.1};
+  double speed, rate = 2.0;
+  std::vector<int> sizes;
+private:
+  int count_;
+};
+}
+"""
+HEADER_PACKAGE = {
+    "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "arm/CMakeLists.txt": "project(arm)\ninstall(DIRECTORY include/ DESTINATION include)\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("center", "middle", "public member 'Link::center' (double) renamed to 'Link::middle' (double)", True),
+        ("  std::vector<int> sizes;\nprivate:\n", "private:\n  std::vector<int> sizes;\n",
+         "public members removed: 'Link::sizes' (std::vector<int>)", True),
+        (", rate = 2.0", "", "public members removed: 'Link::rate' (double)", True),
+        ("  double step{0.1};\n", "", "public members removed: 'Link::step' (double)", True),
+        ("double center", "float center", "public member 'Link::center': type double -> float", False),
+    ],
+)  # fmt: skip
+def test_public_members_of_installed_classes_are_an_interface(repository, compare, old, new, expected, is_breaking):
+    path = "arm/include/arm/point.hpp"
+    repository.commit({**HEADER_PACKAGE, path: POINT_HEADER})
+    repository.write({path: POINT_HEADER.replace(old, new)})
+    result = compare(repository)
+    assert expected in sentences(subject(result, path))
+    assert breaking(result) == ([expected] if is_breaking else [])
+
+
+def test_private_members_of_installed_classes_are_no_interface(repository, compare):
+    path = "arm/include/arm/point.hpp"
+    repository.commit({**HEADER_PACKAGE, path: POINT_HEADER})
+    repository.write({path: POINT_HEADER.replace("count_", "number_")})
+    assert breaking(compare(repository)) == []
+
+
+@pytest.mark.parametrize(
+    "parameter",
+    [
+        "const std_msgs::{}ConstPtr& m",
+        "std_msgs::{}::ConstPtr m",
+        "const std_msgs::msg::{}::ConstSharedPtr & m",
+        "std_msgs::msg::{}::UniquePtr m",
+        "const boost::shared_ptr<std_msgs::{} const>& m",
+        "const ros::MessageEvent<std_msgs::{} const>& m",
+        "const std_msgs::{}& m",
+    ],
+)
+def test_the_callback_of_a_subscription_tells_its_type(repository, compare, parameter):
+    text = 'void A::cb(%s) {}\nvoid A::start() { s = nh_.subscribe("state", 1, &A::cb, this); }\n'
+    repository.commit({"arm/src/node.cpp": text % parameter.format("Float64")})
+    repository.write({"arm/src/node.cpp": text % parameter.format("Bool")})
+    assert breaking(compare(repository)) == ["subscription 'state': type Float64 -> Bool"]
+
+
+def test_a_subscription_with_the_same_callback_is_renamed(repository, compare):
+    text = 'void A::cb(const m::%sPtr& m) {}\nvoid A::start() { s = nh_.subscribe("%s", 1, &A::cb, this); }\n'
+    repository.commit({"arm/src/node.cpp": text % ("Angles", "positions")})
+    repository.write({"arm/src/node.cpp": text % ("State", "cmd")})
+    assert breaking(compare(repository)) == ["subscription 'positions' (Angles) renamed to 'cmd' (State)"]

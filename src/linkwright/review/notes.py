@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
-from linkwright.diagnostics import Phrase, counted, quoted_names
+from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.changes import Subject
 
 _MAX_NAMES = 5
@@ -37,6 +37,29 @@ def unreadable_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
             path=first.path,
             reason=first.problems[0].text,
         )
+
+
+def without_equal_problems(subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
+    """Return subjects without changed files that cannot be read for the same reason, and a note about each reason.
+
+    A file that is the only one with its reason remains a subject.
+    """
+    groups: dict[str, list[Subject]] = {}
+    for subject in subjects:
+        if len(subject.problems) == 1 and subject.problems[0].is_of_both and not subject.changes:
+            groups.setdefault(str(subject.problems[0].text), []).append(subject)
+    groups = {reason: group for reason, group in groups.items() if len(group) > 1}
+    notes = [
+        phrase(
+            "{count} changed files are not compared, such as '{path}': {reason}",
+            count=len(group),
+            path=group[0].path,
+            reason=group[0].problems[0].text,
+        )
+        for group in groups.values()
+    ]
+    grouped = {subject.path for group in groups.values() for subject in group}
+    return [subject for subject in subjects if subject.path not in grouped], notes
 
 
 def missing_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:

@@ -52,10 +52,16 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import makes_actions
+from linkwright.review.launches.script_callers import lost_arguments
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
-from linkwright.review.notes import is_unreadable_as_before, missing_notes, unreadable_notes
+from linkwright.review.notes import (
+    is_unreadable_as_before,
+    missing_notes,
+    unreadable_notes,
+    without_equal_problems,
+)
 from linkwright.review.other_files import file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import find_lost_references
@@ -65,6 +71,7 @@ from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.robots.semantics import semantic_files
 from linkwright.review.sources.callers import broken_callers
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.lost_types import lost_types
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -155,6 +162,7 @@ class _Reviewer:
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         all_subjects = merge_renamed_folders(self._versions, all_subjects)
         untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
+        shown, equal_notes = without_equal_problems([subject for subject in all_subjects if subject not in untouched])
         compared = {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
         reported |= {path for path in compared if not is_template(path)}
         reported |= self._maps.keys()
@@ -164,11 +172,15 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            group_meshes([subject for subject in all_subjects if not subject.is_empty and subject not in untouched]),
+            group_meshes([subject for subject in shown if not subject.is_empty]),
             [file.path for file in other_files],
             {**file_states(self._versions, other_files), **moved},
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
-            list(dict.fromkeys([*notes, *self._notes(), *missing_notes(all_subjects), *unreadable_notes(untouched)])),
+            list(
+                dict.fromkeys(
+                    [*notes, *self._notes(), *missing_notes(all_subjects), *equal_notes, *unreadable_notes(untouched)]
+                )
+            ),
         )
 
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
@@ -186,6 +198,8 @@ class _Reviewer:
         paths = {subject.path for subject in result}
         result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
         result = _with_changes(result, broken_callers(self._versions, self._changed_files))
+        result = _with_changes(result, lost_arguments(self._versions, self._changed_files))
+        result = _with_changes(result, lost_types(self._versions, self._changed_files))
         result = _with_changes(result, find_lost_controllers(self._versions, self._changed_files))
         result = _with_changes(result, find_lost_data(self._versions, self._changed_files))
         return sorted(result, key=lambda subject: subject.path)

@@ -72,6 +72,25 @@ def parse_idl(source: SourceText, type_name: str, known_messages: KnownMessages)
     return _assemble(reader, source, type_name)
 
 
+def parse_idl_structures(source: SourceText) -> tuple[Structure, ...]:
+    """Parse an ``.idl`` file that does not follow the layout of ROS interfaces.
+
+    Returns:
+        All structures of the file with their full names, such as ``robot::State``, then an empty structure for each
+        module that only has constants. The types of fields are not checked.
+
+    Raises:
+        DefinitionError: MSG114, MSG119 or MSG120, for text that cannot be parsed.
+    """
+    reader = _Reader(source, None)
+    reader.definitions(())
+    fields, constants = reader.structures, reader.constants
+    return tuple(
+        Structure(name.replace("/", "::"), tuple(fields.get(name, ())), tuple(constants.get(name, ())))
+        for name in dict.fromkeys([*fields, *constants])
+    )
+
+
 def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition:
     _, kind, _ = type_name.split("/")
     structures: list[Structure] = []
@@ -87,9 +106,14 @@ def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition
 
 
 class _Reader:
-    """A parser that converts the tokens of one file to structures and constants."""
+    """A parser that converts the tokens of one file to structures and constants.
 
-    def __init__(self, source: SourceText, known_messages: KnownMessages) -> None:
+    Args:
+        source: the content of the file.
+        known_messages: determines which messages exist; None to accept any type.
+    """
+
+    def __init__(self, source: SourceText, known_messages: KnownMessages | None) -> None:
         self._source = source
         self._known = known_messages
         self._tokens = list(self._tokenize())
@@ -238,6 +262,8 @@ class _Reader:
             self._fail(
                 "MSG120", phrase("'{construct}' is not supported in messages", construct=text), token.start, len(text)
             )
+        if self._known is None:
+            return FieldType(text)
         parts = text.split("::")
         if len(parts) != 3:
             self._fail("MSG111", phrase("there is no type '{text}'", text=text), token.start, len(text),

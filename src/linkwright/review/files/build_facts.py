@@ -26,6 +26,11 @@ _DOWNLOADS = ("externalproject_add", "fetchcontent_declare")
 """The commands that download other projects, with an address and a version after keywords."""
 _KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
 
+_PATH_FOLDER = "bin"
+"""The folder below the prefix whose programs commands find by their names."""
+_LIBRARIES = "lib/"
+"""The beginning of the folders in which launch files find programs."""
+
 
 class FactKind(Enum):
     """The kind of a fact: its title in a report, and the reason why removing such a fact is breaking."""
@@ -234,6 +239,8 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                     "{kind}: '{name}': {old} -> {new}", kind=kind.title, name=name, old=before.value, new=fact.value
                 )
                 reason = kind.reason if fact.is_value_used else None
+                if kind is FactKind.EXECUTABLE and before.value == _PATH_FOLDER and fact.value.startswith(_LIBRARIES):
+                    reason = phrase("commands that find it through PATH fail; launch files find it only now")
                 pair.add(text, pair.location(fact.span), reason)
         for name, fact in new_facts.items():
             if name in old_facts and old_facts[name].condition != fact.condition:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.messages.definitions.interfaces import Constant, Definition, Field, structures_of
+from linkwright.messages.definitions.idl import parse_idl_structures
+from linkwright.messages.definitions.interfaces import Constant, Field, Structure, structures_of
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
+from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Location
@@ -18,6 +20,7 @@ from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
 _SEPARATOR = "---"
+_IDL = ".idl"
 _MIN_RENUMBERED = 3
 """The minimum number of constants with other values that are summarized in one line. An inserted value renumbers those
 below."""
@@ -34,34 +37,68 @@ def compare_interfaces(pair: FilePair) -> None:
     definitions = pair.read(_read)
     if definitions is None:
         return
-    old, new = map(structures_of, definitions)
+    old, new = definitions
+    if old.keys() != new.keys() and pair.new_file.suffix != _IDL:
+        return  # a message that is a service now, for example, whose file has another name
+    renamed = _renamed_structures(old, new)
     is_ros1 = _is_ros1(pair.new_file)
-    for index, (old_part, new_part, name) in enumerate(zip(old, new, _PART_PREFIXES[len(new)], strict=True)):
-        places = _Places(pair, index)
+    for index, (name, new_part) in enumerate(new.items()):
+        places = _Places(pair, index, new_part.type_name)
+        old_part = old.get(renamed.get(name, name), Structure(name, ()))
+        if name in renamed:
+            text = phrase("structure '{old}' renamed to '{new}'", old=old_part.type_name, new=new_part.type_name)
+            pair.add(text, places.first, _use_reason())
+        elif name not in old and new_part.fields:
+            pair.add(phrase("structure '{name}' added", name=new_part.type_name), places.first)
+            continue
         _compare_fields(pair, old_part.fields, new_part.fields, name, places)
         _compare_constants(pair, old_part.constants, new_part.constants, name, places, is_ros1=is_ros1)
+    for name in [name for name in old if name not in new and name not in renamed.values()]:
+        text = phrase("structure '{name}' removed", name=old[name].type_name)
+        pair.add(text, _Places(pair, 0, old[name].type_name).first_old, _use_reason())
 
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
     """Return the fields of an interface with types and the constants with values, or None if there are none."""
-    parts = structures_of(_read(version.file(path)))
+    parts = _read(version.file(path))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
-        for structure, part in zip(parts, _PART_PREFIXES[len(parts)], strict=True)
+        for part, structure in parts.items()
         for field in structure.fields
     ]
-    names += [f"{constant.name} = {constant.value!s}" for structure in parts for constant in structure.constants]
+    names += [
+        f"{constant.name} = {constant.value!s}" for structure in parts.values() for constant in structure.constants
+    ]
     return joined_first(names, MAX_NAMES) if names else None
 
 
-def _read(file: Path) -> Definition:
+def _read(file: Path) -> Mapping[str, Structure]:
+    """Return the structures of a file by the text in front of the names of their fields."""
+    kind = file.parent.name if file.suffix == _IDL else file.suffix.removeprefix(".")
+    if kind not in SECTIONS:  # a file of another program than ROS, which can have any number of structures
+        return {f"{structure.type_name}.": structure for structure in parse_idl_structures(read_source(file))}
     package = enclosing_package(file.parent)
-    kind = file.parent.name if file.suffix == ".idl" else file.suffix.removeprefix(".")
     name = package[0] if package else file.parent.name
     if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
         name = file.parent.parent.name
     type_name = f"{name}/{kind}/{file.stem}"
-    return parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=_is_ros1(file))
+    parts = structures_of(parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=_is_ros1(file)))
+    return dict(zip(_PART_PREFIXES[len(parts)], parts, strict=True))
+
+
+def _renamed_structures(old: Mapping[str, Structure], new: Mapping[str, Structure]) -> dict[str, str]:
+    """Return the old names of structures that only have another name, by their new names."""
+    renamed: dict[str, str] = {}
+    removed = [name for name in old if name not in new and old[name].fields]
+    for name in [name for name in new if name not in old]:
+        same = [old_name for old_name in removed if old[old_name].fields == new[name].fields]
+        if len(same) == 1 and same[0] not in renamed.values():
+            renamed[name] = same[0]
+    return renamed
+
+
+def _use_reason() -> Phrase:
+    return phrase("programs that use the type do not build or start")
 
 
 def _is_ros1(file: Path) -> bool:
@@ -78,16 +115,27 @@ class _Places:
     Args:
         pair: both versions of the file.
         index: the index of the structure, such as 0 for the request and 1 for the response.
+        name: the name of the structure.
     """
 
-    def __init__(self, pair: FilePair, index: int) -> None:
+    def __init__(self, pair: FilePair, index: int, name: str) -> None:
         self._pair = pair
-        self._old, self._new = (_numbered_lines(file, index) for file in (pair.old_file, pair.new_file))
+        self._old, self._new = (_numbered_lines(file, index, name) for file in (pair.old_file, pair.new_file))
+
+    @property
+    def first(self) -> Location:
+        """The location of the structure in the new version."""
+        return Location(self._pair.new_path, self._new[0][0] if self._new else 1, 1)
+
+    @property
+    def first_old(self) -> Location:
+        """The location of the structure in the old version."""
+        return Location(self._pair.old_path, self._old[0][0] if self._old else 1, 1, is_old=True)
 
     def location_of(self, name: str, *, is_old: bool = False) -> Location:
         """Return the location of a field or constant."""
         path, lines = (self._pair.old_path, self._old) if is_old else (self._pair.new_path, self._new)
-        start = r".*\s" if path.endswith(".idl") else r"\s*[^#\s]\S*\s+"
+        start = r".*\s" if path.endswith(_IDL) else r"\s*[^#\s]\S*\s+"
         pattern = re.compile(rf"{start}({re.escape(name)})\b")
         for number, line in lines:
             match = pattern.match(line)
@@ -96,11 +144,13 @@ class _Places:
         return Location(path, 1, 1, is_old)
 
 
-def _numbered_lines(file: Path, index: int) -> list[tuple[int, str]]:
-    """Return the numbered lines of a structure, or of the whole file if it is an IDL file."""
+def _numbered_lines(file: Path, index: int, name: str) -> list[tuple[int, str]]:
+    """Return the numbered lines of a structure, or those from its start to the end of the file if it is in IDL."""
     lines = list(enumerate(read_source(file).text.splitlines(), 1))
-    if file.suffix == ".idl":
-        return lines
+    if file.suffix == _IDL:
+        head = re.compile(rf"\s*struct\s+{re.split('/|::', name)[-1]}\b")
+        first = next((line for line, text in lines if head.match(text)), 1)
+        return lines[first - 1 :]
     ends = [number for number, line in lines if line.strip() == _SEPARATOR]
     start, end = ([0, *ends][index], [*ends, len(lines) + 1][index]) if index <= len(ends) else (0, 0)
     return lines[start : end - 1]

@@ -11,9 +11,9 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.lenient_xml import read_lenient_root
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
-from linkwright.xacro.cache import read_document
 
 _ROOTS = frozenset({"library", "class_libraries"})
 _UNKNOWN_EXPORT = re.compile(r"pluginlib_export_plugin_description_file\s*\([^)]*\$", re.IGNORECASE)
@@ -73,7 +73,7 @@ def _declared_classes(version: Version, paths: Sequence[str | None]) -> Mapping[
 
 def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _PluginClass]]:
     try:
-        root = read_document(str(file)).root
+        root = read_lenient_root(file)
     except LinkwrightError:
         return
     if root.tag not in _ROOTS:

@@ -12,8 +12,8 @@ from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_firs
 from linkwright.lint.targets import walk
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
+from linkwright.review.lenient_xml import read_lenient_root
 from linkwright.review.versions import Version
-from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
 _NAMED = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
@@ -45,7 +45,7 @@ class _Entry:
 
 def compare_semantics(pair: FilePair) -> None:
     """Compare two versions of a semantic description."""
-    roots = pair.read(_read_root)
+    roots = pair.read(read_lenient_root)
     if roots is not None:
         compare_roots(pair, *roots)
 
@@ -76,7 +76,7 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:
     """Return the groups, states and other named elements of a semantic description, or None if there are none."""
-    titles = [_entry_title(entry) for entry in _read_entries(_read_root(version.file(path)))]
+    titles = [_entry_title(entry) for entry in _read_entries(read_lenient_root(version.file(path)))]
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
@@ -90,7 +90,7 @@ def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
         with suppress(LinkwrightError, OSError):
             pairs |= {
                 frozenset(_EXPRESSION.sub("", element.attributes.get(name, "")) for name in ("link1", "link2"))
-                for element in read_document(str(file)).root.walk()
+                for element in read_lenient_root(file).walk()
                 if element.tag == "disable_collisions"
             }
     return frozenset(pairs)
@@ -105,10 +105,6 @@ def removal_reason(tag: str, name: str) -> Phrase | None:
     if tag == "end_effector":
         return phrase("programs that use the end effector '{name}' do not find it", name=name)
     return None
-
-
-def _read_root(file: Path) -> Element:
-    return read_document(str(file)).root
 
 
 def _read_entries(root: Element) -> Iterator[_Entry]:

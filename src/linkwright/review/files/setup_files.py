@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, foreign, phrase
 from linkwright.packages.readers.installed import PROGRAM_GROUP
-from linkwright.packages.readers.python_values import PythonFile, argument_of
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.packages.readers.setup_py import SetupFile, read_setup
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_build_files
 from linkwright.review.versions import Version
 
 SETUP_FILE = "setup.py"
+_FIND = "find_packages"
 _COMPARED = frozenset({"entry_points", "data_files", "packages"})
 _SHOWN = frozenset({"name", "version", "python_requires", "license"})
 """The arguments of ``setup`` whose string values are shown."""
@@ -71,16 +73,38 @@ def read_setup_facts(version: Version, path: str) -> BuildFacts:
 
 def _other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
     """Yield the Python packages that ``find_packages`` finds, or that catkin installs."""
-    for call in python.calls("find_packages"):
-        for file in sorted(folder.glob("*/__init__.py")):
-            if not file.parent.name.startswith("test"):
-                yield Fact(FactKind.MODULE, file.parent.name, span=python.span(call))
+    for call in python.calls(_FIND):
+        excluded = [python.text(item) for item in getattr(argument_of(call, "exclude"), "elts", ())]
+        for name in _packages_below(folder, ""):
+            if not any(fnmatchcase(name, pattern) for pattern in excluded if pattern is not None):
+                yield Fact(FactKind.MODULE, name, span=python.span(call))
     for call in python.calls("generate_distutils_setup"):
         packages = argument_of(call, "packages")
         for item in getattr(packages, "elts", ()):
-            name = python.text(item)
-            if name is not None:
-                yield Fact(FactKind.MODULE, name, span=python.span(item))
+            package = python.text(item)
+            if package is not None:
+                yield Fact(FactKind.MODULE, package, span=python.span(item))
+
+
+def _packages_below(folder: Path, prefix: str) -> Iterator[str]:
+    """Yield the names of the Python packages in a folder, also of those in other packages, except tests."""
+    for file in sorted(folder.glob("*/__init__.py")):
+        name = f"{prefix}{file.parent.name}"
+        if not name.startswith("test"):
+            yield name
+            yield from _packages_below(file.parent, f"{name}.")
+
+
+def _is_found(python: PythonFile, node: ast.expr) -> bool:
+    """Return whether an expression is a call of ``find_packages`` for the folder of the file."""
+    call = python.resolved(node)
+    if not isinstance(call, ast.Call) or called_name(call).rpartition(".")[2] != _FIND or call.args:
+        return False
+    excluded = argument_of(call, "exclude")
+    is_literal = excluded is None or (
+        isinstance(excluded, (ast.List, ast.Tuple)) and None not in map(python.text, excluded.elts)
+    )
+    return is_literal and all(keyword.arg == "exclude" for keyword in call.keywords)
 
 
 def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
@@ -89,7 +113,8 @@ def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
         return
     facts.facts += _entry_points(python, argument_of(call, "entry_points"))
     for keyword in call.keywords:
-        if keyword.arg in _COMPARED and (keyword.arg != "packages" or setup.packages is not None):
+        is_known = keyword.arg != "packages" or setup.packages is not None or _is_found(python, keyword.value)
+        if keyword.arg in _COMPARED and is_known:
             continue
         text = python.text(keyword.value)
         if keyword.arg in _SHOWN and text is not None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwright.review.launches.conditions import condition_holds
+from linkwright.review.launches.expressions import is_same_expression
 from linkwright.review.launches.outlines import Entry, LaunchOutline, condition_of_setting, without_condition
 
 
@@ -44,7 +45,7 @@ def changed_settings(
         if old_values.keys() == new_values.keys() or not has_conditions:
             for key in dict.fromkeys([*new_values, *old_values]):
                 before, after = old_values.get(key), new_values.get(key)
-                if before != after:
+                if before != after and not is_same_expression(before, after):
                     yield SettingPair(key, before, after, before, after)
             continue
         old_default, is_old_known = _default_value(old_values, old_outline)

@@ -24,7 +24,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
-from linkwright.review.launches.sides import Side, side_of
+from linkwright.review.launches.sides import Side, is_new_name, side_of
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names, title
 from linkwright.review.launches.topic_tools import forwarding_reason
 from linkwright.review.list_changes import list_items
@@ -201,6 +201,8 @@ def setting_reason(
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
         side = side_of(loaded_class(entry) or entry.name, source, new_outline.root)
+        if is_new_name(entry.name, source, old_outline.root, new_outline.root):
+            return None
         if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
             return None
         if old is not None and old_outline.resolve(old) in _remapping_targets(entry, new_outline):

@@ -22,7 +22,8 @@ from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.versions import Version, Versions
 
-_LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
+LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
+"""The ends of the names of launch files."""
 _OPTION = re.compile(r"--[A-Za-z][\w-]*")
 _END = "--ros-args"
 _HELP = "--help"
@@ -93,8 +94,8 @@ def _launch_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> I
         for path in changed
         if PurePosixPath(path).suffix in (".py", "") and _PARSER in versions.new.text(path)
     }
-    for path in versions.new.paths(_LAUNCH_SUFFIXES) if scripts else sorted(changed):
-        if path.endswith(_LAUNCH_SUFFIXES) and is_launch_file(path):
+    for path in versions.new.paths(LAUNCH_SUFFIXES) if scripts else sorted(changed):
+        if path.endswith(LAUNCH_SUFFIXES) and is_launch_file(path):
             text = versions.new.text(path) if path not in changed else ""
             if path in changed or any(script in text for script in scripts):
                 yield path
@@ -113,14 +114,20 @@ def _find_faults(version: Version, path: str) -> dict[_Fault, Entry]:
         if script is None or options is None:
             continue
         passed, are_known = _passed_options(entry, outline)
-        refused = [name for name in passed if not _accepts(options.names, name)]
+        refused = [name for name in passed if not accepts(options.names, name)]
         missing = options.required - set(passed) if are_known else frozenset()
         faults |= {_Fault(script.name, name, is_missing=False): entry for name in refused}
         faults |= {_Fault(script.name, name, is_missing=True): entry for name in sorted(missing)}
     return faults
 
 
-def _accepts(options: Collection[str], name: str) -> bool:
+def accepted_options(script: Path) -> frozenset[str] | None:
+    """Return the options that a script accepts, or None if they are not known or it has none."""
+    options = _read_options(script)
+    return None if options is None else options.names
+
+
+def accepts(options: Collection[str], name: str) -> bool:
     """Return whether a script accepts an option. argparse also accepts the beginning of an option."""
     return name == _HELP or any(option.startswith(name) for option in options)
 

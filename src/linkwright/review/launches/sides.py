@@ -54,6 +54,21 @@ def side_of(program: str, name: str, root: Path | None) -> Side:
     return Side.USES if _NAMED_INPUT.fullmatch(plain) else Side.UNKNOWN
 
 
+def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path | None) -> bool:
+    """Return whether only the new sources of a package have a topic or service; no other program can use it yet.
+
+    Args:
+        program: the package and the executable of the node.
+        name: the name that the node itself gives to the topic or service.
+        old_root: the folder of the old repository; None if it is unknown.
+        new_root: the folder of the new repository; None if it is unknown.
+    """
+    package, plain = program.partition("/")[0], name.lstrip("~/")
+    if old_root is None or new_root is None or package not in package_folders(old_root):
+        return False
+    return plain in _kinds_by_name(new_root, package) and plain not in _kinds_by_name(old_root, package)
+
+
 @lru_cache(maxsize=64)
 def _kinds_by_name(root: Path, package: str) -> dict[str, set[NameKind]]:
     """Return the kinds of the names of topics, services and actions in the sources of a package."""

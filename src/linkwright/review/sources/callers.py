@@ -14,6 +14,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.package_imports import PACKAGE_FILE
 from linkwright.review.sources.python import parse_source
+from linkwright.review.sources.python_objects import FailingCall, ModuleClasses, classes_of, failing_calls
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.sources.signatures import Signature, signature_of
 from linkwright.review.sources.undefined_names import bound_names
@@ -57,9 +58,10 @@ class _Lost:
 def broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that import a removed name, or call a function with unsuitable arguments.
 
-    Only modules of the repository that match exactly one file are searched. Methods of objects are not
-    followed.
+    Only modules of the repository that match exactly one file are searched. Methods of objects are followed if their
+    class is certain.
     """
+    yield from _failing_methods(versions, changed_files)
     lost = [module for file in changed_files if (module := _find_lost(versions, file)) is not None]
     if not lost:
         return
@@ -73,6 +75,42 @@ def broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
         for module in candidates:
             if module.path != path:
                 yield from ((path, change) for change in _Caller(files, path, tree, module).changes())
+
+
+def _failing_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the files that newly call a method that the class of the object lacks."""
+    changed = [file.new_path for file in changed_files if file.new_path and file.new_path.endswith(PYTHON_SUFFIX)]
+    if not changed:
+        return
+    files = {version: _Files(version, ()) for version in (versions.old, versions.new)}
+    old_paths = {file.new_path: file.old_path for file in changed_files}
+    for path in files[versions.new].paths:
+        text = versions.new.text(path)
+        if path not in changed and not any(_module_word(module) in text for module in changed):
+            continue
+        new = list(_failing_calls(files[versions.new], path))
+        old_path = old_paths.get(path, path)
+        old = {call[:3] for call in _failing_calls(files[versions.old], old_path)} if new and old_path else set()
+        for call in {call.method: call for call in reversed(new) if call[:3] not in old}.values():
+            text_of_change = phrase(
+                "calls the method '{name}', which '{class_name}' in '{file}' does not have",
+                name=call.method,
+                class_name=call.class_name,
+                file=call.path,
+            )
+            location = Location(path, call.node.lineno, call.node.col_offset + 1)
+            yield path, Change(text_of_change, Effect.BREAKING, phrase("the call fails"), location)
+
+
+def _failing_calls(files: _Files, path: str) -> Iterator[FailingCall]:
+    tree = _parse(files.version, path)
+
+    def module(name: str, level: int) -> ModuleClasses | None:
+        module_path = files.module(path, name, level)
+        module_tree = None if module_path is None else _parse(files.version, module_path)
+        return None if module_path is None or module_tree is None else classes_of(module_path, module_tree)
+
+    return iter(()) if tree is None else failing_calls(tree, module)
 
 
 def _find_lost(versions: Versions, file: ChangedFile) -> _Lost | None:
@@ -137,6 +175,7 @@ class _Files:
         paths = version.paths((PYTHON_SUFFIX,))
         self.paths = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
         self._gone = removed
+        self.version = version
 
     @cached_property
     def _all_paths(self) -> frozenset[str]:

@@ -14,9 +14,14 @@ from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python_statements import python_statements
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.sources.statements import Difference, Literal, Statement, literal_differences
+from linkwright.review.sources.tokens import TokenKind
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
+_ALIKE = 0.6
+"""The ratio of equal tokens from which two statements with other tokens are versions of one statement."""
+_COUNTERS = frozenset({"0", "1"})
+"""Numbers that also change with the form of a statement, such as in ``i + 1``."""
 _MAX_COMPARED = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
 
@@ -43,7 +48,7 @@ def value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> It
         items = [
             item
             for pair in _pair_statements(old.get(name, []), statements)
-            for item in literal_differences(*pair)
+            for item in (literal_differences(*pair) if pair[0].shape == pair[1].shape else _number_change(*pair))
             if not _is_reported(item, reported) and not _is_renamed(item, old_source.text, new_source.text)
         ]
         if items:
@@ -55,9 +60,10 @@ def value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> It
 
 
 def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
-    """Yield pairs of statements of a function that differ only in literals.
+    """Yield pairs of statements of a function that differ only in literals, or are similar.
 
-    Between equal statements, the statements of the same shape are paired if both versions have equally many.
+    Between equal statements, the statements of the same shape are paired if both versions have equally many. So are
+    the others.
     """
     if len(old) * len(new) > _MAX_COMPARED:
         return
@@ -68,12 +74,38 @@ def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iter
         if tag != "replace":
             continue
         shapes = dict.fromkeys(statement.shape for statement in new[new_start:new_end])
+        old_shapes = {statement.shape for statement in old[old_start:old_end]}
+        lone = (
+            [statement for statement in old[old_start:old_end] if statement.shape not in shapes],
+            [statement for statement in new[new_start:new_end] if statement.shape not in old_shapes],
+        )
+        if len(lone[0]) == len(lone[1]):
+            yield from zip(*lone, strict=True)
         for shape in shapes:
             before = [statement for statement in old[old_start:old_end] if statement.shape == shape]
             after = [statement for statement in new[new_start:new_end] if statement.shape == shape]
             pairs = list(zip(before, after, strict=False))
             if len(before) == len(after) and not _are_reordered(pairs):
                 yield from (pair for pair in pairs if _are_versions(*pair))
+
+
+def _number_change(old: Statement, new: Statement) -> Iterator[Difference]:
+    """Yield the only number that differs between two statements that also differ in another way."""
+    numbers = [
+        [token for token in statement.tokens if token.kind is TokenKind.NUMBER and token.text not in _COUNTERS]
+        for statement in (old, new)
+    ]
+    texts = [[token.text for token in tokens] for tokens in numbers]
+    pairs = {(before, after) for before, after in zip(*texts, strict=False) if before != after}
+    if len(texts[0]) != len(texts[1]) or len(pairs) != 1:
+        return
+    ((before, after),) = pairs
+    old_words, new_words = (
+        [token.text for token in statement.tokens if token.kind is not TokenKind.NUMBER] for statement in (old, new)
+    )
+    if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _ALIKE:
+        token = next(token for token in numbers[1] if token.text == after)
+        yield Difference(f"{before} -> {after}", before, after, token)
 
 
 def _changed_literals(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:

@@ -16,12 +16,13 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
+from linkwright.review.sources.callbacks import with_same_callback
 from linkwright.review.sources.changed_values import value_changes
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.code_changes import code_change
 from linkwright.review.sources.details import detail_changes
+from linkwright.review.sources.name_patterns import pattern_of
 from linkwright.review.sources.names import (
-    CPP_SUFFIXES,
     PYTHON_SUFFIX,
     YES,
     Detail,
@@ -32,6 +33,7 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.reading import is_program_text, read_source_names, try_read_source
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
+from linkwright.review.sources.unchanged_sources import UnchangedSources, counterpart, is_same_topic, user_reason
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SKIPPED = frozenset({"setup.py", "conf.py"})
@@ -52,7 +54,9 @@ _USED = (
     *(NameKind.ACTION, NameKind.ACTION_CLIENT),
 )
 """The kinds of names by which a node communicates."""
-_LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION)
+_DECLARED = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
+"""The kinds that matter to others only if they can import or include the source."""
+_LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds whose names may mean another thing in another source."""
 
 
@@ -96,7 +100,7 @@ class _Side:
     def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
         self.version = version
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
-        self._texts: dict[str, list[str]] = {}
+        self._others: dict[str, UnchangedSources] = {}
 
     def names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
@@ -171,23 +175,32 @@ class _Side:
             return True
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
-        texts = (f'"{item.name}"', f"'{item.name}'")
-        return not any(text in content for content in self._other_texts(package) for text in texts)
+        others = self._unchanged(package)
+        return not (others.has_same(item) if item.kind in _USED else others.has_text(item.name))
+
+    def keeps(self, item: SourceName, path: str) -> bool:
+        """Return whether an unchanged source of the same package has a topic, service or action of the same kind."""
+        package = self.package(path) if item.kind in _USED else None
+        return package is not None and self._unchanged(package).has_same(item)
+
+    def user(self, item: SourceName, path: str) -> str | None:
+        """Return a source of the same package with the other end of a topic, service or action, or None."""
+        package, kind = self.package(path), counterpart(item.kind)
+        if package is None or kind is None:
+            return None
+        for other, names in self._names.items():
+            if self.package(other) == package and any(is_same_topic(item, each) for each in names.of_kind(kind)):
+                return other
+        return self._unchanged(package).user(item)
 
     def package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""
         return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
 
-    def _other_texts(self, package: str) -> list[str]:
-        """Return the texts of a package's unchanged sources, except tests and launch files."""
-        if package not in self._texts:
-            paths = self.version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), package)
-            self._texts[package] = [self.version.text(path) for path in paths if self._is_other(PurePosixPath(path))]
-        return self._texts[package]
-
-    def _is_other(self, path: PurePosixPath) -> bool:
-        is_part = TEST_FOLDERS.isdisjoint(path.parts) and not is_launch_file_name(path.name)
-        return is_part and path.as_posix() not in self._names
+    def _unchanged(self, package: str) -> UnchangedSources:
+        if package not in self._others:
+            self._others[package] = UnchangedSources(self.version, package, self._names)
+        return self._others[package]
 
     def _generates(self, name: str, path: str) -> bool:
         """Return whether a parameter description beside a source, from which code is generated, has a parameter."""
@@ -279,7 +292,7 @@ class _Pair:
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
         is_told = kind is NameKind.CLASS and is_python
-        if kind in (NameKind.CLASS, NameKind.FUNCTION) and not is_told and not self._is_interface(old_path):
+        if kind in _DECLARED and not is_told and not self._is_interface(old_path):
             return
         if kind is NameKind.IMPORT:
             if None in (self.file.old_path, self.file.new_path) or not is_installed_package(
@@ -287,7 +300,7 @@ class _Pair:
             ):
                 return
             removed, added = _other_imports(removed, new_names), _other_imports(added, old_names)
-        if kind is NameKind.FUNCTION and not path.endswith(PYTHON_SUFFIX):
+        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_python:
             classes = [{item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)]
             removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
             added = [item for item in added if _has_class(item, classes[0] & classes[1])]
@@ -296,17 +309,21 @@ class _Pair:
             plain = old_names.plain_classes & new_names.plain_classes if is_installed else set()
             removed = [item for item in removed if _is_method_of(item, plain)]
             added = [item for item in added if _is_method_of(item, plain)]
-        for old_item, new_item in _pair_renamed(removed, added):
+        kept = [item for name, item in before.items() if name not in after and self.new.keeps(item, path)]
+        used = [item for name, item in after.items() if name not in before and self.old.keeps(item, old_path)]
+        pairs = with_same_callback([*removed, *kept], [*added, *used], old_names, new_names)
+        taken = [item for pair in pairs for item in pair]
+        rest = [[item for item in items if item not in taken] for items in ([*removed, *kept], [*added, *used])]
+        for old_item, new_item in [*pairs, *_pair_renamed(*rest)]:
             text = phrase(
                 "{kind} {old} renamed to {new}", kind=kind.title, old=_name_text(old_item), new=_name_text(new_item)
             )
             is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
-            reason = (
-                None if is_same else self._removal_reason([old_item], old_names)
-            )  # tf takes both names for the same
+            # tf takes both names for the same
+            reason = None if is_same or old_item in kept else self._rename_reason(old_item, new_item, old_names)
             yield self._change(text, new_item.span, self.new, reason)
-            removed.remove(old_item)
-            added.remove(new_item)
+            removed = [item for item in removed if item is not old_item]
+            added = [item for item in added if item is not new_item]
         yield from self._expression_changes(kind, removed, added)
         yield from self._lone_changes(kind, removed, added, old_names)
 
@@ -316,7 +333,7 @@ class _Pair:
         """Yield the changes of names that both versions have. Functions count only if other files can call them."""
         is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
         is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
-        if kind is NameKind.FUNCTION and not is_called:
+        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_called:
             return
         if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
             yield self._merged_functions(changed)
@@ -348,7 +365,7 @@ class _Pair:
     ) -> Iterator[Change]:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
-        if added and (kind is not NameKind.FUNCTION or self.file.old_path is not None):
+        if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
             text = phrase("{kind} added: {names}", kind=kind.plural, names=_names_text(added))
             reason = _required_reason(added) if self.file.old_path is not None else None
             yield self._change(text, added[0].span, self.new, reason)
@@ -360,7 +377,18 @@ class _Pair:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self._is_interface(path):
             return None
-        return removal_reason(items, names, path)
+        reason = removal_reason(items, names, path)
+        users = ((item, self.new.user(item, path)) for item in (items if reason is not None else ()))
+        return next((user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
+
+    def _rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:
+        """Return the reason why a new name is breaking. For a client, it is if the package serves only the old name."""
+        reason = self._removal_reason([old_item], names)
+        if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
+            return reason
+        path = self.file.path
+        server = None if self.new.user(new_item, path) is not None else self.new.user(old_item, path)
+        return None if server is None else user_reason(old_item.kind, server, old_item.name)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
@@ -372,11 +400,14 @@ class _Pair:
         sides = [[item for item in names.expressions if item.kind is kind] for names in (old_names, new_names)]
         removed_expressions = [item for item in sides[0] if all(item.name != other.name for other in sides[1])]
         added_expressions = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
-        for item in list(removed_expressions):  # another name for the same thing
-            other = next((expression for expression in added_expressions if expression.type == item.type), None)
-            if other is not None:
+        yield from self._expression_types(*sides)
+        for item in list(removed_expressions):  # another expression for the same thing
+            same = [expression for expression in added_expressions if expression.type == item.type]
+            if same:
+                other = max(same, key=lambda expression: _name_similarity(item, expression))
                 removed_expressions.remove(item)
                 added_expressions.remove(other)
+                yield from self._changed_pattern(item, other)
         for item, other in _take_pairs(removed, added_expressions):
             text = phrase(
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name_text(item), new=other.name
@@ -401,6 +432,24 @@ class _Pair:
             )
             yield self._change(text, removed_expressions[0].span, self.old, None)
             added.clear()
+
+    def _expression_types(self, old: Sequence[SourceName], new: Sequence[SourceName]) -> Iterator[Change]:
+        """Yield the names with the same expression but another type, if only one name has the expression."""
+        for item in new:
+            same = [[each for each in items if each.name == item.name] for items in (old, new)]
+            if len(same[0]) == len(same[1]) == 1 and same[0][0].type != item.type and same[0][0].type and item.type:
+                ((_, text, reason),) = ((item, *each) for each in detail_changes(same[0][0], item))
+                yield self._change(text, item.span, self.new, reason)
+
+    def _changed_pattern(self, old: SourceName, new: SourceName) -> Iterator[Change]:
+        """Yield the change of the texts in an expression for a name."""
+        patterns = pattern_of(old.name), pattern_of(new.name)
+        if None in patterns or patterns[0] == patterns[1]:
+            return
+        text = phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=_name_text(old), new=_name_text(new))
+        reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
+        is_lost = self._removal_reason([old], self.old.names(self.file.old_path)) is not None
+        yield self._change(text, new.span, self.new, reason if is_lost else None)
 
     def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changed rates and periods, if both versions have equally many, and all rates of a new node."""
@@ -430,11 +479,15 @@ class _Pair:
                 yield self._change(text, span, self.new, phrase("the package cannot be imported once it is installed"))
 
     def _undefined_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the names that are still used but no longer defined or imported."""
+        """Yield the names and methods that are still used but no longer defined or imported."""
         for name, span in new_names.undefined.items() if self.file.old_path is not None else ():
             if name in old_names.bound:
                 text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
                 yield self._change(text, span, self.new, phrase("the code that uses the name fails"))
+        for name, span in new_names.undefined_methods.items():
+            if name in old_names.attributes:
+                text = phrase("calls its method '{name}', which nothing defines any more", name=name)
+                yield self._change(text, span, self.new, phrase("the call fails"))
 
     @staticmethod
     def _change(text: Phrase, span: Span, side: _Side, reason: Phrase | None) -> Change:

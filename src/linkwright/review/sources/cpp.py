@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.review.sources.cpp_functions import DeclaredFunction, read_declared_functions
+from linkwright.review.sources.cpp_callbacks import message_type
+from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_members, read_declared_functions
 from linkwright.review.sources.cpp_members import header_texts, made_members
+from linkwright.review.sources.name_patterns import format_of
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
@@ -46,6 +49,7 @@ _ROS1 = frozenset(
     }
 )
 """The methods whose names also occur in other libraries, so that only literal names count."""
+_COMMUNICATION = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
 _NODE_FIRST = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
 _OUTPUTS = frozenset({"getParam", "getParamCached", "get"})
@@ -148,6 +152,9 @@ class _Reader:
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
+        for member in declared_members(self._text):
+            end = member.start + len(member.name.rpartition("::")[2])
+            self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
 
     def _read_call(self, match: re.Match[str]) -> None:
         text, function = self._text, match["name"]
@@ -173,6 +180,8 @@ class _Reader:
                 self._add_literal(kind, begin, end)
             return
         named = arguments[1:2] if function in _NODE_FIRST else arguments[:1]
+        if named and kind in _COMMUNICATION and self._add_formatted(kind, type_name, *named[0]):
+            return
         candidates = arguments if is_action else named
         found = next(((begin, end) for begin, end in candidates if self._literal_text(begin, end) is not None), None)
         if found is not None:
@@ -183,6 +192,15 @@ class _Reader:
             begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
             expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._span(begin, end))
             self._names.expressions.append(expression)
+
+    def _add_formatted(self, kind: NameKind, type_name: str, begin: int, end: int) -> bool:
+        """Add the pattern of a name that a call of ``snprintf`` writes, and return whether there is one."""
+        variable = _VARIABLE.fullmatch(self._text[begin:end])
+        pattern = None if variable is None else format_of(self._text[:begin], variable["name"])
+        if pattern is None:
+            return False
+        self._names.expressions.append(SourceName(kind, pattern, type_name, self._span(begin, end)))
+        return True
 
     def _add_called(
         self,
@@ -203,6 +221,8 @@ class _Reader:
             details.append((Detail.QUEUE if function in _ROS1 else Detail.QOS, " ".join(others[0].split())))
         if kind is NameKind.PUBLISHER and function in _ROS1 and others[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))
+        if kind is NameKind.SUBSCRIPTION and not type_name:
+            type_name = self._callback_type(arguments)
         name = self._literal_text(*found) or ""
         if namespace and name and not name.startswith(("/", "~")):
             name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
@@ -216,6 +236,18 @@ class _Reader:
         functions = set(_POINTER.findall(text))
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
+
+    def _callback_type(self, arguments: list[tuple[int, int]]) -> str:
+        """Return the type of the messages that the only callback among the arguments takes, or an empty text."""
+        functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
+        words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[2:3])
+        functions = functions or {word for word in words if word.isidentifier()}
+        return message_type(functions.pop(), [self._text, *self._headers]) if len(functions) == 1 else ""
+
+    @cached_property
+    def _headers(self) -> list[str]:
+        """The headers that may declare members of the classes of the source, without comments."""
+        return [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in header_texts(Path(self._source.name))]
 
     def _literal_default(self, function: str, arguments: list[tuple[int, int]]) -> str:
         """Return the literal default of a parameter. A function that returns the value takes it as second argument."""
@@ -234,8 +266,7 @@ class _Reader:
 
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""
-        headers = [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in header_texts(Path(self._source.name))]
-        for member in made_members(self._text, headers):
+        for member in made_members(self._text, self._headers):
             for begin, end in list(_argument_offsets(self._text, member.start))[:3]:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break

@@ -1,4 +1,4 @@
-"""Read the public functions that a C++ header declares, with the types of their arguments."""
+"""Read the public functions and data members that a C++ header declares, with their types."""
 
 from __future__ import annotations
 
@@ -16,6 +16,11 @@ _QUALIFIERS = re.compile(
     r"\s*(?:const|volatile|noexcept(?:\([^)]*\))?|override|final|&&?|=\s*0|=\s*default|->[^()]*|\s)*", re.DOTALL
 )
 _PARAMETER = re.compile(r"(?P<type>.*[\s*&>])(?P<name>\w+)\s*(?P<array>\[\w*\])?", re.DOTALL)
+_MEMBER = re.compile(r"(?P<type>[\w:][^()=]*[\s*&>])(?P<name>\w+)\s*(?:\[[^\]]*\]\s*)*", re.DOTALL)
+_NOT_MEMBERS = frozenset(
+    {*("class", "struct", "enum", "union", "using", "typedef", "friend", "template", "namespace", "operator", "extern")}
+)
+"""The words with which declarations begin that declare no data member."""
 _TYPE_KEYWORDS = frozenset({"const", "unsigned", "signed", "long", "struct", "typename", "short", "enum", "class"})
 _KEYWORDS = frozenset({"if", "for", "while", "switch", "return", "sizeof", "decltype", "alignas", "static_assert"})
 _OPENING = re.compile(r"[({\[<]")
@@ -46,12 +51,53 @@ class _Scope(NamedTuple):
     access: str
 
 
+class DeclaredMember(NamedTuple):
+    """A data member of a class in a header.
+
+    Attributes:
+        name: the name with that of its class.
+        type: the type.
+        start: the offset of its name.
+    """
+
+    name: str
+    type: str
+    start: int
+
+
 def read_declared_functions(text: str) -> Iterator[DeclaredFunction]:
     """Yield the public functions that a header declares.
 
     Args:
         text: the text of the header without comments.
     """
+    for chunk, classes, start in _public_chunks(text):
+        if "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
+            yield from _read_function(chunk, classes, start)
+
+
+def declared_members(text: str) -> Iterator[DeclaredMember]:
+    """Yield the public data members of the classes that a header declares.
+
+    Args:
+        text: the text of the header without comments.
+    """
+    for chunk, classes, start in _public_chunks(text):
+        declaration = re.sub(r"(?<!:):(?!:)\s*\d+$", "", chunk)
+        items = list(_split_parameters(declaration))
+        first = _MEMBER.fullmatch(items[0].partition("=")[0].strip()) if items and classes else None
+        if first is None or not _NOT_MEMBERS.isdisjoint(first["type"].split()):
+            continue
+        type_name = re.sub(r"\s*([*&<>,:])\s*", r"\1", " ".join(first["type"].split()))
+        for item in (first["name"], *(item.partition("=")[0].strip(" \n\t*&") for item in items[1:])):
+            place = re.search(rf"\b{re.escape(item.partition('[')[0])}\b(?!\s*(?:::|<))", text[start:])
+            if place is not None:
+                name = "::".join([*classes, item.partition("[")[0]])
+                yield DeclaredMember(name, type_name, start + place.start())
+
+
+def _public_chunks(text: str) -> Iterator[tuple[str, list[str], int]]:
+    """Yield the beginnings of public declarations, each with the names of the classes around it and its offset."""
     text = _PREPROCESSOR.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     scopes: list[_Scope] = []
     start = depth = 0
@@ -67,9 +113,8 @@ def read_declared_functions(text: str) -> Iterator[DeclaredFunction]:
                 scopes[-1] = scopes[-1]._replace(access=access["access"])
                 start = index + 1
             continue
-        is_visible = all(scope.is_open and scope.access == "public" for scope in scopes)
-        if character != "}" and is_visible and "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
-            yield from _read_function(chunk, [scope.name for scope in scopes if scope.name], start)
+        if character != "}" and all(scope.is_open and scope.access == "public" for scope in scopes):
+            yield chunk, [scope.name for scope in scopes if scope.name], start
         if character == "{":
             scopes.append(_read_scope(chunk))
         elif character == "}" and scopes:

@@ -56,7 +56,7 @@ def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Ph
             "{kind} '{name}': type {old} -> {new}", kind=new.kind.title, name=new.name, old=old.type, new=new.type
         )
         reason = phrase("programs that use '{name}' with the old type get nothing", name=new.name)
-        yield text, reason
+        yield text, None if new.kind is NameKind.MEMBER else reason
 
 
 def _function_text(name: str, old: str, new: str) -> Phrase:

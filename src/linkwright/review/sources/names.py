@@ -36,6 +36,7 @@ class NameKind(Enum):
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     CLASS = (phrase("class"), phrase("classes"))
     FUNCTION = (phrase("function"), phrase("functions"))
+    MEMBER = (phrase("public member"), phrase("public members"))
     RECONFIGURATION = (phrase("server of dynamic_reconfigure"), phrase("servers of dynamic_reconfigure"))
     ROUTE = (phrase("web route"), phrase("web routes"))
     WEB_EVENT = (phrase("event of Socket.IO"), phrase("events of Socket.IO"))
@@ -104,6 +105,9 @@ class SourceNames:
         plain_classes: the classes of a Python source that certainly have no methods besides their bodies.
         bound: the names that a Python 3 source defines or imports.
         undefined: the undefined names that a source uses, each with the location of its first use.
+        attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
+        undefined_methods: the undefined methods that classes of a source call on themselves, each with
+             the location of its first call.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
@@ -119,6 +123,8 @@ class SourceNames:
     plain_classes: set[str] = field(default_factory=set)
     bound: frozenset[str] = frozenset()
     undefined: dict[str, Span] = field(default_factory=dict)
+    attributes: frozenset[str] = frozenset()
+    undefined_methods: dict[str, Span] = field(default_factory=dict)
     has_star: bool = False
 
     def add(self, name: SourceName) -> None:

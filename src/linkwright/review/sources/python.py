@@ -13,6 +13,7 @@ from linkwright.packages.readers.python_values import PythonFile, Value, argumen
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.python2 import as_python3
+from linkwright.review.sources.python_methods import defined_attributes, undefined_methods
 from linkwright.review.sources.signatures import is_plain, method_signatures, signature_of
 from linkwright.review.sources.undefined_names import bound_names, undefined_names
 
@@ -70,6 +71,9 @@ def read_python(source: SourceText, names: SourceNames) -> None:
     if python.source is source:  # not one that only Python 2 can parse
         names.bound = frozenset(bound_names(python.tree))
         names.undefined.update((name, python.span(node)) for name, node in undefined_names(python.tree).items())
+        names.attributes = frozenset(defined_attributes(python.tree))
+        methods = undefined_methods(python.tree).items()
+        names.undefined_methods.update((name, python.span(node)) for name, node in methods)
     if PurePosixPath(source.name).name == PACKAGE_FILE:
         read_imports(python, names)
 

@@ -24,7 +24,7 @@ def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
         path: the path of the source.
         names: the names in the source.
     """
-    if kind not in (NameKind.CLASS, NameKind.FUNCTION):
+    if kind not in (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER):
         return True
     pure_path = PurePosixPath(path)
     if pure_path.suffix == PYTHON_SUFFIX:
@@ -54,7 +54,7 @@ def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -
         return phrase("programs and configurations that load the class do not find it")
     if kind is NameKind.IMPORT:
         return phrase("programs that import '{name}' do not find it", name=text)
-    if kind in (NameKind.CLASS, NameKind.FUNCTION):
+    if kind in (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER):
         if names.is_program:
             return None
         if path.endswith(PYTHON_SUFFIX) and all("." in item.name for item in items):

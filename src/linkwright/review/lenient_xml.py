@@ -1,0 +1,23 @@
+"""XML files that ROS reads with TinyXML2, which accepts more than XML allows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.xacro.cache import read_document
+from linkwright.xmltree import Element
+from linkwright.xmltree.reader import read_bytes
+
+
+def read_lenient_root(file: Path) -> Element:
+    """Return the root element of a file, also if comments or blanks are in front of the XML declaration.
+
+    Raises:
+        LinkwrightError: TinyXML2 cannot read the file either (XML###).
+    """
+    try:
+        return read_document(str(file)).root
+    except LinkwrightError:
+        return parse_as_gazebo(read_bytes(str(file)), str(file))[0].root

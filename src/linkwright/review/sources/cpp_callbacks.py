@@ -1,0 +1,36 @@
+"""The types of messages that callbacks of subscriptions in C++ take."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_POINTER = re.compile(r"(?:::|(?<=\w))(?:Const)?(?:Shared|Unique|Weak)?Ptr$")
+_TEMPLATE = re.compile(r"(?:(?:std|boost)::(?:shared_ptr|unique_ptr)|(?:ros::)?MessageEvent)\s*<(?P<type>[^<>]*)>")
+_PARAMETER = re.compile(r"(?P<type>.*?[\s&*>])?(?P<name>\w*)", re.DOTALL)
+
+
+def message_type(function: str, texts: Iterable[str]) -> str:
+    """Return the type of the messages that a callback takes, without its package; empty if it is not known.
+
+    Args:
+        function: the name of the function without its class.
+        texts: the texts, without comments, in which the function may be defined or declared.
+    """
+    parameter = r"(?P<parameter>[^(),]*(?:<[^<>()]*>[^(),]*)?)"
+    pattern = re.compile(rf"\b{re.escape(function)}\s*\({parameter}\)\s*(?:const\s*)?[;{{]")
+    for text in texts:
+        types = {_message(match["parameter"]) for match in pattern.finditer(text)} - {""}
+        if types:
+            return types.pop() if len(types) == 1 else ""
+    return ""
+
+
+def _message(parameter: str) -> str:
+    """Return the type of a message from a parameter, such as ``const std_msgs::BoolConstPtr& msg``."""
+    match = _PARAMETER.fullmatch(parameter.strip())
+    type_name = match["type"] or "" if match is not None else ""
+    type_name = re.sub(r"\bconst\b|[&*\s]", " ", type_name).strip()
+    template = _TEMPLATE.fullmatch(type_name)
+    name = template["type"].strip() if template is not None else _POINTER.sub("", type_name)
+    return name.rpartition("::")[2] if re.fullmatch(r"(?:\w+::)+[A-Z]\w*", name) else ""

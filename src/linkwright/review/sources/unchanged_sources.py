@@ -1,0 +1,143 @@
+"""The sources of a package that a range of commits leaves as they are, and the names in them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+from functools import cached_property
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.installed_paths import package_facts, python_packages
+from linkwright.review.sources.names import (
+    CPP_SUFFIXES,
+    HEADER_SUFFIXES,
+    PYTHON_SUFFIX,
+    NameKind,
+    SourceName,
+    SourceNames,
+)
+from linkwright.review.sources.reading import read_source_names
+from linkwright.review.versions import TEST_FOLDERS, Version
+
+_SEARCHES = re.compile(r"\bGLOB(?:_RECURSE)?\b|\baux_source_directory\b", re.IGNORECASE)
+"""The commands of CMake that find sources by patterns."""
+_COUNTERPARTS = {
+    NameKind.PUBLISHER: NameKind.SUBSCRIPTION,
+    NameKind.SUBSCRIPTION: NameKind.PUBLISHER,
+    NameKind.SERVICE: NameKind.CLIENT,
+    NameKind.CLIENT: NameKind.SERVICE,
+    NameKind.ACTION: NameKind.ACTION_CLIENT,
+    NameKind.ACTION_CLIENT: NameKind.ACTION,
+}
+"""The kind of name at the other end of a topic, service or action."""
+
+
+class UnchangedSources:
+    """The sources of a package that no commit of a range changes, except tests, launch files and unbuilt copies.
+
+    Args:
+        version: the version.
+        package: the folder of the package.
+        changed: the paths of the changed sources.
+    """
+
+    def __init__(self, version: Version, package: str, changed: Collection[str]) -> None:
+        self._version = version
+        self._package = package
+        self._changed = changed
+        self._names: dict[str, SourceNames] = {}
+
+    def has_text(self, name: str) -> bool:
+        """Return whether one of the sources has a text in quotes."""
+        return any(True for _ in self._paths_with(name))
+
+    def has_same(self, item: SourceName) -> bool:
+        """Return whether one of the sources has a name of the same kind."""
+        paths = self._paths_with(item.name)
+        return any(item.name == other.name for path in paths for other in self._of(path, item.kind))
+
+    def user(self, item: SourceName) -> str | None:
+        """Return the path of a source with the other end of a topic, service or action, or None if there is none."""
+        kind = _COUNTERPARTS[item.kind]
+        names = dict.fromkeys((item.name, item.name.lstrip("/"), f"/{item.name}"))
+        paths = (path for name in names for path in self._paths_with(name))
+        return next((path for path in paths if any(is_same_topic(item, each) for each in self._of(path, kind))), None)
+
+    def _of(self, path: str, kind: NameKind) -> Iterator[SourceName]:
+        if path not in self._names:
+            self._names[path] = read_source_names(self._version.file(path))
+        return self._names[path].of_kind(kind)
+
+    def _paths_with(self, name: str) -> Iterator[str]:
+        texts = (f'"{name}"', f"'{name}'")
+        return (path for path, content in self._texts.items() if any(text in content for text in texts))
+
+    @cached_property
+    def _texts(self) -> dict[str, str]:
+        paths = self._version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), self._package)
+        return {path: self._version.text(path) for path in paths if self._is_part(PurePosixPath(path))}
+
+    def _is_part(self, path: PurePosixPath) -> bool:
+        if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
+            return False
+        return path.as_posix() not in self._changed and self._is_built(path)
+
+    def _is_built(self, path: PurePosixPath) -> bool:
+        """Return whether the package can build or install a source."""
+        if path.suffix == PYTHON_SUFFIX:
+            folders = self._python_folders
+            return folders is None or any(path.is_relative_to(folder) for folder in folders)
+        known = self._built_sources
+        return path.suffix in HEADER_SUFFIXES or known is None or path.as_posix() in known
+
+    @cached_property
+    def _python_folders(self) -> list[PurePosixPath] | None:
+        """The files and folders in Python that the package installs, or None if they are not known."""
+        facts = package_facts(self._version, self._package)
+        has_cmake = self._version.file(f"{self._package}/{CMAKE_FILE}".lstrip("/")).is_file()
+        if has_cmake or facts is None or not facts.is_complete:
+            return None
+        names = python_packages(self._version, self._package)
+        places = [f"{part}{name}" for name in names for part in ("", "src/")]
+        return [PurePosixPath(self._package) / place for place in (*places, *facts.files.values())]
+
+    @cached_property
+    def _built_sources(self) -> frozenset[str] | None:
+        """The sources in C++ that the package builds, or None if they are not known."""
+        facts = package_facts(self._version, self._package)
+        text = self._version.text(f"{self._package}/{CMAKE_FILE}".lstrip("/"))
+        if facts is None or not facts.targets or _SEARCHES.search(text):
+            return None
+        paths = (source for parts in facts.targets.values() for source in parts.sources)
+        return frozenset((PurePosixPath(self._package) / path).as_posix() for path in paths)
+
+
+def counterpart(kind: NameKind) -> NameKind | None:
+    """Return the kind of name at the other end of a topic, service or action, or None for other names."""
+    return _COUNTERPARTS.get(kind)
+
+
+def is_same_topic(item: SourceName, other: SourceName) -> bool:
+    """Return whether two names of a package lead to the same topic, service or action outside of namespaces."""
+    return item.name.lstrip("/") == other.name.lstrip("/")
+
+
+def user_reason(kind: NameKind, path: str, name: str) -> Phrase:
+    """Return why it is breaking that a name is gone which another source of the package still uses.
+
+    Args:
+        kind: the kind of the name that is gone.
+        path: the path of the other source.
+        name: the name.
+    """
+    values = {"file": PurePosixPath(path).name, "name": name}
+    if kind is NameKind.PUBLISHER:
+        return phrase("'{file}' still subscribes to '{name}'", **values)
+    if kind is NameKind.SUBSCRIPTION:
+        return phrase("'{file}' still publishes '{name}'", **values)
+    if kind in (NameKind.SERVICE, NameKind.ACTION):
+        return phrase("'{file}' still calls '{name}'", **values)
+    return phrase("'{file}' still serves '{name}'", **values)

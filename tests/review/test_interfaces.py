@@ -1,0 +1,52 @@
+"""Changes of interfaces that do not follow the layout of ROS packages."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking, sentences, subject
+
+STATE = """module robot {
+struct State {
+  long mode;
+};
+const long LIMIT = 3;
+struct Pose {
+  State state;
+  double x;
+};
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("long mode;", "long mode;\n  long level;", "field 'robot::State.level' of type int32 added", True),
+        ("  double x;\n", "", "field 'robot::Pose.x' removed", True),
+        ("struct Pose", "struct Place", "structure 'robot::Pose' renamed to 'robot::Place'", True),
+        (STATE[STATE.index("struct Pose") :], "};\n", "structure 'robot::Pose' removed", True),
+        ("LIMIT = 3", "LIMIT = 4", "constant 'robot.LIMIT': 3 -> 4", True),
+        ("struct Pose", "struct Speed { float x; };\nstruct Pose", "structure 'robot::Speed' added", False),
+    ],
+)
+def test_idl_files_outside_of_folders_of_ros_are_compared(repository, compare, old, new, expected, is_breaking):
+    repository.commit({"dds/State_t.idl": STATE})
+    repository.write({"dds/State_t.idl": STATE.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "dds/State_t.idl")) == [expected]
+    assert breaking(result) == ([expected] if is_breaking else [])
+
+
+def test_other_idl_files_that_cannot_be_parsed_are_not_compared(repository, compare):
+    repository.commit({"dds/Mode.idl": "enum Mode { A, B };\n"})
+    repository.write({"dds/Mode.idl": "enum Mode { A, B, C };\n"})
+    (problem,) = subject(compare(repository), "dds/Mode.idl").problems
+    assert str(problem.text).startswith("neither version can be read")
+
+
+def test_a_message_that_becomes_a_service_is_a_renamed_file(repository, compare):
+    fields = "".join(f"int32 value_{number}\n" for number in range(20))
+    repository.commit({"p/msg/Count.msg": fields})
+    repository.commit({"p/msg/Count.msg": None, "p/srv/Count.srv": f"{fields}---\n"})
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == ["renamed from p/msg/Count.msg"]

@@ -1,0 +1,93 @@
+"""Topics and services of changed sources that unchanged sources of the same package use, too."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+TALKER = """#include <ros/ros.h>
+void talk(ros::NodeHandle& nh) {
+  auto p = nh.advertise<std_msgs::Float64>("chatter", 1);
+  auto c = nh.serviceClient<std_srvs::Trigger>("home");
+}
+"""
+LISTENER = """#include <ros/ros.h>
+void listen(ros::NodeHandle& nh) {
+  auto s = nh.subscribe("chatter", 1, f);
+  auto h = nh.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>("home", g);
+}
+"""
+CMAKE = """project(arm)
+add_executable(talker src/talker.cpp)
+add_executable(listener src/listener.cpp)
+"""
+FILES = {
+    "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "arm/CMakeLists.txt": CMAKE,
+    "arm/src/talker.cpp": TALKER,
+    "arm/src/listener.cpp": LISTENER,
+}
+RENAMED = "publisher 'chatter' (Float64) renamed to 'talk' (Float64)"
+
+
+def reasons(result):
+    return [str(change.reason) for _, change in result.breaking_changes]
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "sentence", "reason"),
+    [
+        ("talker.cpp", '"chatter"', '"talk"', RENAMED, "'listener.cpp' still subscribes to 'chatter'"),
+        ("listener.cpp", '"chatter"', '"talk"', "subscription 'chatter' renamed to 'talk'",
+         "'talker.cpp' still publishes 'chatter'"),
+        ("listener.cpp", '"home"', '"go_home"', "service 'home' (Trigger) renamed to 'go_home' (Trigger)",
+         "'talker.cpp' still calls 'home'"),
+        ("talker.cpp", '"home"', '"go_home"',
+         "service client 'home' (Trigger) renamed to 'go_home' (Trigger)",
+         "'listener.cpp' still serves 'home'"),
+    ],
+)  # fmt: skip
+def test_a_renamed_name_is_breaking_if_the_other_end_keeps_it(repository, compare, path, old, new, sentence, reason):
+    repository.commit(FILES)
+    repository.write({f"arm/src/{path}": FILES[f"arm/src/{path}"].replace(old, new)})
+    result = compare(repository)
+    assert breaking(result) == [sentence]
+    assert reasons(result) == [reason]
+
+
+def test_a_topic_that_another_node_publishes_is_not_lost(repository, compare):
+    files = {**FILES, "arm/src/other.cpp": TALKER, "arm/CMakeLists.txt": f"{CMAKE}add_executable(o src/other.cpp)\n"}
+    repository.commit(files)
+    repository.write({"arm/src/talker.cpp": TALKER.replace("chatter", "talk")})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/src/talker.cpp")) == [RENAMED]
+    assert breaking(result) == []
+
+
+@pytest.mark.parametrize(
+    ("build_file", "text", "source", "copy"),
+    [
+        ("CMakeLists.txt", CMAKE.replace("listener", "talker2"), "src/talker.cpp", "src/backups/talker.cpp"),
+        ("setup.py", "from setuptools import setup\nsetup(name='arm', packages=['arm'])\n", "arm/n.py", "old/n.py"),
+    ],
+)
+def test_a_copy_that_is_not_built_keeps_no_name(repository, compare, build_file, text, source, copy):
+    code = TALKER if source.endswith("cpp") else "self.create_publisher(Float64, 'chatter', 1)\n"
+    manifest = {"arm/package.xml": FILES["arm/package.xml"], f"arm/{build_file}": text}
+    repository.commit({**manifest, f"arm/{source}": code, f"arm/{copy}": code})
+    repository.write({f"arm/{source}": code.replace("chatter", "talk")})
+    assert breaking(compare(repository)) == [RENAMED]
+
+
+def test_a_publisher_that_moves_to_a_changed_source_is_no_change(repository, compare):
+    line = '  auto p = nh.advertise<std_msgs::Float64>("chatter", 1);\n'
+    repository.commit(FILES)
+    repository.write(
+        {
+            "arm/src/talker.cpp": TALKER.replace(line, ""),
+            "arm/src/listener.cpp": LISTENER.replace("  auto s", f"{line}  auto s"),
+        }
+    )
+    assert breaking(compare(repository)) == []
