@@ -552,7 +552,7 @@ def _renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list
         similar = [each for each in rest if _fits(item, each)] if is_compared else []
         candidates = [each for each in similar if _similarity(item, each) >= _SIMILAR]
         same = [[each for each in items if each.type == item.type and item.type] for items in (removed, rest)]
-        if item.kind is not NameKind.PARAMETER and len(same[0]) == len(same[1]) == 1:
+        if item.kind not in (NameKind.PARAMETER, NameKind.MEMBER) and len(same[0]) == len(same[1]) == 1:
             candidates = same[1]
         if candidates:
             best = max(candidates, key=lambda each: _similarity(item, each))
