@@ -58,7 +58,7 @@ def test_unchanged_files_of_the_other_version_are_not_read(repository, monkeypat
     old = TextFiles(repository.root)
     changed = "w/models/box/model.config"
     assert old.affected([changed], CANDIDATES) == {"w/models/box/model.sdf", "w/worlds/w.sdf"}
-    reads = counted(monkeypatch, affected, "_text")
+    reads = counted(monkeypatch, affected, "_read_beginning")
     new = TextFiles(repository.root, old, {changed})
     assert new.affected([changed], CANDIDATES) == {"w/models/box/model.sdf", "w/worlds/w.sdf"}
     assert reads == [(repository.root / changed,)]
@@ -134,7 +134,7 @@ def test_mesh_with_two_paths_fills_the_cache_once(repository):
 def test_files_are_not_searched_for_names_if_no_description_can_read_a_changed_file(repository, monkeypatch, name):
     repository.commit(FILES)
     repository.write({f"w/{name}": PACKAGE.replace("1.0.0", "1.1.0")})
-    reads = counted(monkeypatch, affected, "_text")
+    reads = counted(monkeypatch, affected, "_read_beginning")
     versions = open_versions(repository.root, "HEAD")
     review(versions)
     versions.close()

@@ -123,6 +123,9 @@ HEADER_PACKAGE = {
          "public members removed: 'Link::sizes' (std::vector<int>)", True),
         (", rate = 2.0", "", "public members removed: 'Link::rate' (double)", True),
         ("  double step{0.1};\n", "", "public members removed: 'Link::step' (double)", True),
+        ("  double center;\n  double step{0.1};\n  double speed, rate = 2.0;\n  std::vector<int> sizes;\n",
+         "  double step{0.1};\n  double speed, rate = 2.0;\n  double mass;\n",
+         "public members removed: 'Link::center' (double), 'Link::sizes' (std::vector<int>)", True),
         ("double center", "float center", "public member 'Link::center': type double -> float", False),
     ],
 )  # fmt: skip

@@ -566,7 +566,7 @@ def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) ->
         same = [
             [candidate for candidate in items if candidate.type == item.type and item.type] for items in (removed, rest)
         ]
-        if item.kind is not NameKind.PARAMETER and len(same[0]) == len(same[1]) == 1:
+        if item.kind not in (NameKind.PARAMETER, NameKind.MEMBER) and len(same[0]) == len(same[1]) == 1:
             candidates = same[1]
         if candidates:
             best = max(candidates, key=lambda candidate: _name_similarity(item, candidate))
