@@ -34,14 +34,12 @@ SECOND = 1_000_000_000
 CLASSIC_SYSTEMS = ("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin")
 """Plugins that tests/simulation/test_server.py and test_classic_services.py test."""
 UNSIMULATED = (
-    "wheel-slip",
     "follow-actor",
     "log",
     "log-playback",
     "model-photo-shoot",
     "air-speed",
 )
-WITHOUT_ALTERNATIVE = ("wheel-slip",)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,9 +95,7 @@ async def test_unsupported_gz_system_is_reported_with_alternative(name):
     async with running_server(robot(plugin)) as (_, __, log):
         warning, *alternatives = [record.text for record in log]
         assert warning == f"plugins and sensors that are not simulated: gz-sim-{name}-system"
-        assert [text.split(", use ")[0] for text in alternatives] == [f"instead of gz-sim-{name}-system"] * (
-            name not in WITHOUT_ALTERNATIVE
-        )
+        assert [text.split(", use ")[0] for text in alternatives] == [f"instead of gz-sim-{name}-system"]
 
 
 def test_parameters_are_converted_and_accept_old_names():

@@ -29,7 +29,6 @@ class LinkWrenchParameters:
     topic: str = ""
     topic_persistent: str = ""
     topic_clear: str = ""
-    verbose: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +54,7 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
     """
 
     PARAMETERS = LinkWrenchParameters
-    IGNORED = ("persistent",)  # read by reset
+    IGNORED = ("persistent", "verbose")  # the first is read by reset
     CARRIED = ("_persistent",)
 
     def start(self) -> None:

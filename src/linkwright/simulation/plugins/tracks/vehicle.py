@@ -21,7 +21,6 @@ from linkwright.graph.stepped.node import Output
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.messages import Vector3, from_values, get_message
 from linkwright.simulation.plugins.gz_drive import GZ_RATE, DriveCommands, GzDriveParameters, connect_drive
-from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.xmltree import Element
 
@@ -37,7 +36,6 @@ class TrackedVehicleParameters(GzDriveParameters):
 
     body_link: str = ""
     tracks_separation: float = 1.0
-    track_height: float = parameter(0.2, aliases=("tracks_height",))
     steering_efficiency: float = 0.5
     steering_efficiency_topic: str = ""
 
@@ -55,7 +53,10 @@ class GzTrackedVehicle(SimulatedPlugin[TrackedVehicleParameters]):
     """The substitute for ``gz-sim-tracked-vehicle-system``."""
 
     PARAMETERS = TrackedVehicleParameters
-    IGNORED = ("left_track", "right_track", "linear_velocity", "angular_velocity", "debug")  # read by start
+    IGNORED = (
+        *("left_track", "right_track", "linear_velocity", "angular_velocity"),  # read by start
+        *("track_height", "tracks_height", "debug"),
+    )
     CARRIED = ("_pose", "_efficiency")
 
     def start(self) -> None:
