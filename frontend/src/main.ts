@@ -35,6 +35,7 @@ import { JointsPanel } from "./panels/joints/joints-panel";
 import { WorldCommands } from "./panels/modeling/world-commands";
 import { WorldPanel } from "./panels/modeling/world-panel";
 import { preserveSearches } from "./panels/preserve-searches";
+import { RequestedPanels } from "./panels/requested-panels";
 import { ChecksPanel } from "./panels/learning/checks-panel";
 import { LessonPanel } from "./panels/learning/lesson-panel";
 import { createLivePanels } from "./panels/monitor/live-panels";
@@ -151,6 +152,14 @@ function start(app: HTMLElement): void {
   const dock = new Dock(dockBox, panels, new Layouts(openBrowserStorage()), openBrowserStorage());
   followAvailability(dock, session);
   new FilePanels(connection, dock);
+  new RequestedPanels(connection, session.monitor, {
+    open: (id) => dock.open(id),
+    openDisplayPanel: (id) => dock.displayPanels.bringToFront(id),
+    revealDisplay: (id) => {
+      const display = session.displays.find(id);
+      if (display) session.displays.rowRequested.emit(display);
+    },
+  });
 
   session.description.placeRequested.on(({ file, line, display, name }) => {
     dock.open("source");

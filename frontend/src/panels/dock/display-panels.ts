@@ -31,6 +31,8 @@ interface Placement {
 export class DisplayPanels implements PanelHost {
   private readonly hosts = new Map<string, HTMLElement>();
   private readonly panels = new Map<string, DisplayPanel>();
+  /** The keys of panels to bring to the front as soon as their displays offer them. */
+  private readonly requested = new Set<string>();
 
   /** `api` is a function because the dock creates contents while it is itself being created. */
   constructor(private readonly getApi: () => DockviewApi) {}
@@ -43,6 +45,15 @@ export class DisplayPanels implements PanelHost {
     } else {
       this.add(panel);
     }
+    if (this.requested.delete(panel.key)) this.getApi().getPanel(panel.key)?.api.setActive();
+  }
+
+  /** Brings the panel of a display to the front, now or as soon as the display offers one. */
+  bringToFront(display: string): void {
+    const key = PREFIX + display;
+    const panel = this.panels.has(key) ? this.getApi().getPanel(key) : undefined;
+    if (panel) panel.api.setActive();
+    else this.requested.add(key);
   }
 
   withdraw(key: string): void {
