@@ -77,6 +77,7 @@ import { ShareMenu } from "./shell/share-menu";
 import { StatusBar } from "./shell/status-bar";
 import { TitleBar } from "./shell/title-bar";
 import type { CourseState } from "./state/course";
+import { isSceneEmpty } from "./state/displays";
 import { Session } from "./state/session";
 import { THEME_CHOICES, ThemeState } from "./state/theme";
 import { takeRequested } from "./requested-settings";
@@ -154,7 +155,7 @@ function start(app: HTMLElement): void {
   new FilePanels(connection, dock);
   new RequestedPanels(connection, session.monitor, {
     open: (id) => dock.open(id),
-    openDisplayPanel: (id) => dock.displayPanels.bringToFront(id),
+    openDisplayPanel: (id) => dock.displayPanels.bringToFront(id, isSceneEmpty(session.displays)),
     revealDisplay: (id) => {
       const display = session.displays.find(id);
       if (display) session.displays.rowRequested.emit(display);

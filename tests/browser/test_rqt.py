@@ -30,6 +30,23 @@ def generate_launch_description():
 """
 
 
+IMAGES = """\
+<launch>
+  <node pkg="image_tools" exec="cam2image"><param name="burger_mode" value="true"/></node>
+  <node pkg="rqt_image_view" exec="rqt_image_view" args="/image"/>
+</launch>
+"""
+
+
+def test_image_takes_the_place_of_an_empty_scene(start: Start, open_page: Callable[..., Page], tmp_path: Path) -> None:
+    (tmp_path / "camera.launch.xml").write_text(IMAGES)
+    page = open_page(start("launch", str(tmp_path / "camera.launch.xml")), wait=False)
+    until(page, "document.querySelector('.display-panel-host canvas')?.clientWidth > 500")
+    assert page.locator(".panel-tab", has_text="3D View").is_visible()
+    page.reload()
+    until(page, "document.querySelector('.display-panel-host canvas')?.clientWidth > 500")
+
+
 def test_launch_shows_image_plot_parameters_and_teleop(
     start: Start, open_page: Callable[..., Page], tmp_path: Path
 ) -> None:
