@@ -12,6 +12,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
+
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "src" / "linkwright"
 LIST = PACKAGE / "packages" / "substituted_names.txt"
@@ -23,6 +25,8 @@ def names() -> str:
     """Return the list: a line for each package, with its name and the names of its executables."""
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]
     names_by_module: dict[str, set[str]] = {"rviz2": set()}
+    for package, executable in PANEL_PROGRAMS:
+        names_by_module.setdefault(package, set()).add(executable)
     for folder in ("standins/tables", "messages/data"):
         names_by_module |= {file.stem: set() for file in (PACKAGE / folder).glob("*.txt")}
     for name in groups["linkwright.components"]:

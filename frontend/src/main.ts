@@ -35,6 +35,7 @@ import { JointsPanel } from "./panels/joints/joints-panel";
 import { WorldCommands } from "./panels/modeling/world-commands";
 import { WorldPanel } from "./panels/modeling/world-panel";
 import { preserveSearches } from "./panels/preserve-searches";
+import { RequestedPanels } from "./panels/requested-panels";
 import { ChecksPanel } from "./panels/learning/checks-panel";
 import { LessonPanel } from "./panels/learning/lesson-panel";
 import { createLivePanels } from "./panels/monitor/live-panels";
@@ -76,6 +77,7 @@ import { ShareMenu } from "./shell/share-menu";
 import { StatusBar } from "./shell/status-bar";
 import { TitleBar } from "./shell/title-bar";
 import type { CourseState } from "./state/course";
+import { isSceneEmpty } from "./state/displays";
 import { Session } from "./state/session";
 import { THEME_CHOICES, ThemeState } from "./state/theme";
 import { takeRequested } from "./requested-settings";
@@ -151,6 +153,14 @@ function start(app: HTMLElement): void {
   const dock = new Dock(dockBox, panels, new Layouts(openBrowserStorage()), openBrowserStorage());
   followAvailability(dock, session);
   new FilePanels(connection, dock);
+  new RequestedPanels(connection, session.monitor, {
+    open: (id) => dock.open(id),
+    openDisplayPanel: (id) => dock.displayPanels.bringToFront(id, isSceneEmpty(session.displays)),
+    revealDisplay: (id) => {
+      const display = session.displays.find(id);
+      if (display) session.displays.rowRequested.emit(display);
+    },
+  });
 
   session.description.placeRequested.on(({ file, line, display, name }) => {
     dock.open("source");

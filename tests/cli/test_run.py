@@ -107,6 +107,23 @@ def test_built_in_node_ends_on_sigint(run: Run) -> None:
     assert process.wait(SECONDS) == 0
 
 
+def test_run_opens_panel_of_rqt_program(run: Run) -> None:
+    process = run("--no-open", "rqt_graph", "rqt_graph", "--fast", "--ros-args", "-r", "__ns:=/x")
+    assert process.stdout is not None
+    assert process.stdout.readline().startswith("Viewer: http://127.0.0.1:")
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "rqt_graph has no argument '--fast'" in err
+
+
+def test_missing_program_of_rqt_names_replacement(run: Run) -> None:
+    process = run("rqt_publisher", "rqt_publisher")
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "the page has no panel that replaces 'rqt_publisher'; run `ros2 topic pub TOPIC TYPE VALUES`" in err
+
+
 def test_run_starts_viewer(run: Run) -> None:
     process = run("--no-open", "rviz2", "rviz2")
     assert process.stdout is not None

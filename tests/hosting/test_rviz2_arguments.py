@@ -47,7 +47,7 @@ def test_unknown_and_incomplete_arguments_are_reported() -> None:
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-d", "x.rviz", "-h"]])
 def test_help_option_prints_usage_and_starts_nothing(arguments, capsys):
-    assert run_viewer(arguments) == 0
+    assert run_viewer("rviz2", "rviz2", arguments) == 0
     assert capsys.readouterr().out.startswith("usage: rviz2 ")
 
 

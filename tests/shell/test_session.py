@@ -95,11 +95,17 @@ def test_unknown_command_is_reported_with_nearest_name() -> None:
     assert "colcon" in (diagnostic.hint or "")
 
 
+def test_programs_of_rqt_are_commands() -> None:
+    for name in ("rqt", "rqt_graph", "rqt_plot"):
+        result = run_in_shell([name, "--help"])
+        assert (result.returncode, result.stdout.splitlines()[0].split()[:2]) == (0, ["usage:", name])
+
+
 def test_missing_ros_program_suggests_alternative() -> None:
     with pytest.raises(LinkwrightError) as caught:
-        run_shell(["rqt_graph"], {"PATH": BARE})
+        run_shell(["rqt_publisher"], {"PATH": BARE})
     (diagnostic,) = caught.value.diagnostics
-    assert "panel Node graph" in (diagnostic.hint or "")
+    assert "ros2 topic pub" in (diagnostic.hint or "")
 
 
 def in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:

@@ -110,6 +110,7 @@ import type {
 } from "./monitor";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
 import type { CellGrid, CloudPoints, PointFields, RequestPoint } from "./points";
+import type { RequestedPanels } from "./requested-panels";
 import type {
   CenterJoints,
   JointPositions,
@@ -245,6 +246,7 @@ export * from "./message";
 export * from "./monitor";
 export * from "./navigation";
 export * from "./points";
+export * from "./requested-panels";
 export * from "./robot";
 export * from "./simulation";
 export * from "./source-editor";
@@ -313,6 +315,7 @@ export type ServerMessage =
   | ProgramPages
   | PropertyChanged
   | RecordingState
+  | RequestedPanels
   | RobotScene
   | SavedViews
   | SeriesStates

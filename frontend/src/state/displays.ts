@@ -196,3 +196,11 @@ export class DisplaysState {
     for (const display of this.displays) add(display.rows, display);
   }
 }
+
+/** Display classes that show no data in the scene. */
+const WITHOUT_DATA = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
+
+/** Returns whether no enabled display shows data in the scene. */
+export function isSceneEmpty({ displays }: DisplaysState): boolean {
+  return displays.every((display) => !display.isEnabled || display.isGroup || WITHOUT_DATA.has(display.drawing));
+}

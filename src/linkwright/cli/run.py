@@ -33,11 +33,11 @@ def run(arguments: argparse.Namespace) -> int:
     receives the signals. On Windows, it runs in a child process.
     """
     from linkwright import standins
-    from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer
+    from linkwright.launch import LaunchOptions, find_program, opens_page, run_viewer
     from linkwright.packages import PackageFinder
 
     program_arguments = list(arguments.words)
-    if is_viewer(arguments.package, arguments.executable):
+    if opens_page(arguments.package, arguments.executable):
         options = LaunchOptions(
             arguments.host,
             arguments.port,
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
             history=arguments.history,
             terminal=terminal_folder(arguments),
         )
-        return run_viewer(program_arguments, options)
+        return run_viewer(arguments.package, arguments.executable, program_arguments, options)
     standins.activate()
     program = find_program(PackageFinder(), arguments.package, arguments.executable)
     prefix = shlex.split(arguments.prefix) if arguments.prefix else []

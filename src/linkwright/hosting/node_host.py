@@ -137,7 +137,7 @@ class NodeHost:
         for plan in planned:
             with suppress(LinkwrightError):
                 await self._viewers.serve_page(plan)
-        if planned:
+        if planned or any(plan.panel_program for plan in self._planned):
             await asyncio.to_thread(load_viewer)
 
     async def start_planned(self) -> None:
@@ -149,10 +149,15 @@ class NodeHost:
                 plan = next((hosted_plan for hosted_plan in self._planned if hosted_plan.is_viewer), self._planned[0])
                 self._planned.remove(plan)
                 self._destinations[plan.process_name] = plan.destinations[2]
+                with_world = any(hosted_plan.opens_gazebo_window for hosted_plan in self._planned)
                 if plan.is_viewer:
-                    with_world = any(hosted_plan.opens_gazebo_window for hosted_plan in self._planned)
                     await self._start_viewer(plan, with_world=with_world)
                 else:
+                    if plan.panel_program is not None and not self._viewers:
+                        page = plan.panel_page
+                        if not await self._start_viewer(page, with_world=with_world):
+                            break
+                        self._windows[plan.process_name] = page
                     if plan.opens_gazebo_window and not self._viewers.shows_world:
                         window = plan.gazebo_window
                         if not await self._start_viewer(window):
@@ -214,15 +219,13 @@ class NodeHost:
     # --- nodes ----------------------------------------------------------------------------------------------
 
     def _start_node(self, plan: HostedPlan) -> None:
-        from linkwright.nodes import EXECUTABLES
         from linkwright.nodes.options import FinishingNode, LoadingNode
 
         session = self._session
         session.log.write_info(plan.process_name, "started in the launcher's process")
-        options = plan.node_options(session.descriptions.library)
         try:
             with self._attribute_records(plan.process_name), self._hide_fatal_records():
-                node = EXECUTABLES[(plan.package, plan.executable)](self.graph, options)
+                node = self._create_node(plan)
         except LinkwrightError as error:
             self._handle_start_failure(plan, error)
             return
@@ -236,6 +239,18 @@ class NodeHost:
         session.node_started(plan)
         if isinstance(node, FinishingNode):
             node.finished.add_done_callback(lambda future: self._handle_finish(plan, node, future))
+
+    def _create_node(self, plan: HostedPlan) -> RunningNode:
+        options = plan.node_options(self._session.descriptions.library)
+        if plan.panel_program is not None:
+            from linkwright.hosting.panel_node import PanelNode
+
+            node = PanelNode(self.graph, plan, options)
+            self._session.log.write_diagnostics(node.findings)
+            return node
+        from linkwright.nodes import EXECUTABLES
+
+        return EXECUTABLES[(plan.package, plan.executable)](self.graph, options)
 
     def _register(self, process_name: str, node: RunningNode, parameters: Mapping[str, Any]) -> None:
         from linkwright.nodes.options import NodeWithFiles
@@ -366,6 +381,10 @@ class NodeHost:
     async def _stop_viewer(self, plan: HostedPlan, viewer: Viewer) -> None:
         await self._viewers.stop(plan, viewer)
         self._report_end(plan)
+        if not self._viewers:
+            for panel_plan, node in tuple(self._running.values()):
+                if panel_plan.panel_program is not None:
+                    self._stop_node(panel_plan, node)
 
     # --- both -----------------------------------------------------------------------------------------------
 
@@ -377,7 +396,12 @@ class NodeHost:
         if plan.owner is not None:
             self._session.node_ended(plan, status)
         window = self._windows.pop(plan.process_name, None)
-        if window is not None:
+        if window is None:
+            return
+        heir = next((other for other, _ in self._running.values() if other.panel_program is not None), None)
+        if heir is not None:
+            self._windows[heir.process_name] = window
+        else:
             self._session.spawn(self._stop_viewer(window, self._viewers.pop_viewer(window)))
 
     def _on_log(self, record: LogRecord) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.hosting.history_size import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
+from linkwright.hosting.rqt_programs import PanelProgram, panel_program
 
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
@@ -52,6 +53,7 @@ class HostedPlan:
         parameters_of_others: parameters, by node name, for other nodes that the node creates; None if there are none.
         environment: the environment variables when the plan was created.
         waits_for_fix: whether a node with an invalid description file is started when the file is fixed.
+        replaced_window: the name of the window that a viewer replaces, for the log.
     """
 
     owner: Any
@@ -69,6 +71,7 @@ class HostedPlan:
     respawns: int = 0
     respawn_delay: float = 0.0
     waits_for_fix: bool = True
+    replaced_window: str = "RViz"
     parameters_of_others: ParameterRules | None = None
     environment: Mapping[str, str] = field(default_factory=lambda: dict(os.environ))
 
@@ -76,6 +79,11 @@ class HostedPlan:
     def is_viewer(self) -> bool:
         """Whether the node is RViz, which Linkwright's viewer replaces."""
         return is_viewer(self.package, self.executable)
+
+    @property
+    def panel_program(self) -> PanelProgram | None:
+        """The program of rqt whose window is a panel of the page, or None for other nodes."""
+        return panel_program(self.package, self.executable)
 
     @property
     def opens_gazebo_window(self) -> bool:
@@ -95,6 +103,14 @@ class HostedPlan:
             "/",
             {"use_sim_time": True},
             viewer_config=lambda: world_config("Gazebo"),
+            replaced_window="Gazebo's window",
+        )
+
+    @property
+    def panel_page(self) -> HostedPlan:
+        """The plan of the viewer that opens for a panel if no viewer is running."""
+        return HostedPlan(
+            None, f"{self.process_name}-page", *VIEWER, "viewer", "/", replaced_window="the windows of rqt"
         )
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
@@ -126,6 +142,11 @@ class HostedPlan:
 def is_viewer(package: str | None, executable: str) -> bool:
     """Return whether a node is RViz, which Linkwright's viewer replaces."""
     return (package, executable) == VIEWER
+
+
+def opens_page(package: str | None, executable: str) -> bool:
+    """Return whether a node is RViz or a program of rqt, whose window Linkwright's page replaces."""
+    return is_viewer(package, executable) or panel_program(package, executable) is not None
 
 
 @dataclass(frozen=True)

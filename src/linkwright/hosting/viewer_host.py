@@ -61,9 +61,11 @@ class ViewerHost:
             viewer.show_diagnostics(findings)
 
     def attach_panel(self, node: RunningNode) -> None:
-        """Show the sliders of a node in the viewers, if the node has any."""
-        for _, viewer in self._viewers.values():
+        """Show the sliders of a node in the viewers, or open the panel that it requests in the first viewer."""
+        for number, (_, viewer) in enumerate(self._viewers.values()):
             _attach_panel(viewer, node)
+            if number == 0:
+                _open_panel(viewer, node)
 
     async def serve_page(self, plan: HostedPlan) -> None:
         """Serve the page of a viewer that does not exist yet, and print the address of the page.
@@ -168,14 +170,15 @@ class ViewerHost:
             server.on_pause(WorldPause(viewer.context.node).set_active)
         if session.options.open_browser and server.pages_wait and not server.is_embedded:
             session.spawn(self._open_unless_reconnected(viewer))
-        replaced_window = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.write_info(
             plan.process_name,
-            f"started in the launcher's process: the viewer in the browser replaces {replaced_window}",
+            f"started in the launcher's process: the viewer in the browser replaces {plan.replaced_window}",
         )
         viewer.show_diagnostics([*self._findings, *findings])
         for node in nodes:
             _attach_panel(viewer, node)
+            if len(self._viewers) == 1:
+                _open_panel(viewer, node)
 
     async def _open_unless_reconnected(self, viewer: Viewer) -> None:
         """Open the page in a browser, unless a page of the previous run reconnects."""
@@ -244,6 +247,15 @@ def _attach_panel(viewer: Viewer, node: RunningNode) -> None:
 
     if isinstance(node, NodeWithSliders):
         viewer.attach_joint_panel(node.panel)
+
+
+def _open_panel(viewer: Viewer, node: RunningNode) -> None:
+    from linkwright.hosting.panel_node import PanelNode
+
+    if isinstance(node, PanelNode) and node.request is not None:
+        from linkwright.panels.requested_panels import RequestedPanelsFeature  # few launches open panels
+
+        viewer.add_feature(RequestedPanelsFeature).add(node.request)
 
 
 def _open_in_browser(url: str) -> None:

@@ -3,7 +3,7 @@
 Descriptions consist of actions, substitutions, conditions and events.
 """
 
-from linkwright.hosting.plans import is_viewer
+from linkwright.hosting.plans import opens_page
 from linkwright.launch.program import find_program, run_viewer
 from linkwright.launch.ros.executables import Executable, builtin_packages, executables_of
 from linkwright.launch.run import LaunchOptions, print_description, run_launch, show_arguments
@@ -16,7 +16,7 @@ __all__ = [
     "builtin_packages",
     "executables_of",
     "find_program",
-    "is_viewer",
+    "opens_page",
     "parse_launch_words",
     "print_description",
     "run_launch",

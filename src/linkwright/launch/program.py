@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.hosting.launch_log import LaunchLog
-from linkwright.hosting.plans import VIEWER
+from linkwright.hosting.rqt_arguments import usage
+from linkwright.hosting.rqt_programs import panel_program
 from linkwright.hosting.rviz2_arguments import USAGE, asks_for_help
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.ros import Node
@@ -45,20 +46,22 @@ def find_program(finder: PackageFinder, package: str, executable: str) -> Progra
     return Program(executable_of_package.command, environment, executable_of_package.origin is Origin.LINKWRIGHT)
 
 
-def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
-    """Run the viewer, Linkwright's replacement for RViz, until the user ends it.
+def run_viewer(package: str, executable: str, arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
+    """Run the viewer, Linkwright's replacement for RViz and rqt, until the user ends it.
 
     Args:
-        arguments: the command-line arguments of ``rviz2``.
+        package: the package of the program that the viewer replaces.
+        executable: the name of the program, ``rviz2`` or a program of rqt.
+        arguments: the command-line arguments of the program.
         options: the options of the viewer; None for the defaults.
 
     Returns:
         The exit status, see `linkwright.launch.run_launch`.
     """
     if asks_for_help(arguments):
-        print(USAGE, end="")
+        program = panel_program(package, executable)
+        print(USAGE if program is None else usage(executable, program), end="")
         return 0
-    package, executable = VIEWER
     viewer = Node(package=package, executable=executable, arguments=list(arguments))
 
     def load(_: LaunchLog) -> tuple[LaunchDescription, dict[str, Any]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, print_diagnostics
+from linkwright.hosting.rqt_programs import MISSING_PROGRAMS
 
 _PAGE_HINT = phrase(
     "use a panel of the page: run `linkwright launch` or `linkwright view`, and open Panels in its title bar"
@@ -26,13 +27,7 @@ HINTS: dict[str, Phrase] = {
         "Linkwright needs no system packages: put the sources of a missing package into the "
         "workspace's src folder, and install Python modules with pip"
     ),
-    "rqt": _PAGE_HINT,
-    "rqt_console": _PAGE_HINT,
-    "rqt_graph": phrase("open the panel Node graph of the page, or run `ros2 node info NODE` in the terminal"),
-    "rqt_plot": _PAGE_HINT,
-    "rqt_reconfigure": phrase(
-        "open the panel Parameters of the page, or run `ros2 param set NODE NAME VALUE` in the terminal"
-    ),
+    **MISSING_PROGRAMS,
     "rviz": phrase("run `rviz2 -d FILE.rviz`, or `linkwright view FILE` for one robot"),
     "plotjuggler": _PAGE_HINT,
     "gazebo": _SIMULATION_HINT,

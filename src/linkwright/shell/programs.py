@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from linkwright.files.user_folders import cache_folder
+from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
 from linkwright.messages.distribution import ASSUMED
 from linkwright.packages.ament import ROS_VARIABLES
 
@@ -22,6 +23,7 @@ PROGRAMS = {
     "urdf_to_graphviz": ("linkwright.cli.tools", "urdf_to_graphviz"),
     "urdf_to_graphiz": ("linkwright.cli.tools", "urdf_to_graphviz"),
     "rviz2": ("linkwright.cli.tools", "rviz2"),
+    **{name: ("linkwright.cli.tools", name) for _, name in PANEL_PROGRAMS},
     "launch_test": ("linkwright.cli.tools", "launch_test"),
     "colcon": ("linkwright.cli.tools", "colcon"),
     "linkwright": ("linkwright", None),

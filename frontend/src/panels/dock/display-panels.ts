@@ -31,6 +31,10 @@ interface Placement {
 export class DisplayPanels implements PanelHost {
   private readonly hosts = new Map<string, HTMLElement>();
   private readonly panels = new Map<string, DisplayPanel>();
+  /** The panels to bring to the front when their displays offer them; the value is whether they replace the scene. */
+  private readonly requested = new Map<string, boolean>();
+  /** The keys of the panels whose places no stored arrangement specifies. */
+  private readonly placed = new Set<string>();
 
   /** `api` is a function because the dock creates contents while it is itself being created. */
   constructor(private readonly getApi: () => DockviewApi) {}
@@ -43,10 +47,35 @@ export class DisplayPanels implements PanelHost {
     } else {
       this.add(panel);
     }
+    const replacesScene = this.requested.get(panel.key);
+    if (replacesScene === undefined) return;
+    this.requested.delete(panel.key);
+    this.bringToFront(panel.key.slice(PREFIX.length), replacesScene);
+  }
+
+  /**
+   * Brings the panel of a display to the front, now or as soon as the display offers one. A panel that replaces the
+   * scene moves there, unless a stored arrangement specifies its place.
+   */
+  bringToFront(display: string, replacesScene: boolean): void {
+    const key = PREFIX + display;
+    const api = this.getApi();
+    const panel = this.panels.has(key) ? api.getPanel(key) : undefined;
+    if (!panel) {
+      this.requested.set(key, replacesScene);
+      return;
+    }
+    const scene = api.getPanel("scene");
+    if (replacesScene && scene && this.placed.has(key)) {
+      const isShared = api.panels.some(({ id, group }) => id !== key && id.startsWith(PREFIX) && group === scene.group);
+      panel.api.moveTo({ group: scene.group, position: isShared ? "right" : "center" });
+    }
+    panel.api.setActive();
   }
 
   withdraw(key: string): void {
     this.panels.delete(key);
+    this.placed.delete(key);
     this.remove(key);
   }
 
@@ -84,6 +113,7 @@ export class DisplayPanels implements PanelHost {
 
   private add(panel: DisplayPanel): void {
     const { key, title, element } = panel;
+    this.placed.add(key);
     this.ensureHost(key).replaceChildren(element);
     const openPanels = this.getApi().panels.filter(({ id }) => id.startsWith(PREFIX));
     const placement = this.place(panel, openPanels.at(-1)?.id, openPanels.length);

@@ -60,7 +60,6 @@ export class ParametersPanel implements Panel {
 
   private choose(name: string): void {
     this.state.choose(name);
-    this.showNodes();
   }
 
   private onKeyDown(event: KeyboardEvent): void {
@@ -85,6 +84,7 @@ export class ParametersPanel implements Panel {
     if (node !== this.shownNode) {
       this.lines.clear();
       this.shownNode = node;
+      this.showNodes();
     }
     const shownParameters = (parameters?.parameters ?? []).filter(({ name }) => name.toLowerCase().includes(this.filter));
     const elements = shownParameters.map((row) => {

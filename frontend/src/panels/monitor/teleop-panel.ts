@@ -29,6 +29,8 @@ export class TeleopPanel implements Panel {
   };
   private readonly gamepadName = h("span", { class: "note" });
   private readonly limits: Record<"linear" | "angular", HTMLInputElement>;
+  private readonly topic = h("input", { class: "field", aria: { label: strings.monitor.teleop.topic } });
+  private kind!: HTMLSelectElement;
   private isVisible = false;
 
   constructor(private readonly state: TeleopState) {
@@ -70,15 +72,13 @@ export class TeleopPanel implements Panel {
   private createForm(): HTMLElement {
     const texts = strings.monitor.teleop;
     const { settings } = this.state;
-    const topic = h("input", { class: "field", aria: { label: texts.topic } });
+    const { topic } = this;
     const frame = h("input", { class: "field", title: texts.frameHint, aria: { label: texts.frameHint } });
-    topic.value = settings.topic;
     frame.value = settings.frameId;
     topic.addEventListener("change", () => this.state.configure({ topic: topic.value.trim() }));
     frame.addEventListener("change", () => this.state.configure({ frameId: frame.value.trim() }));
     const kinds = (["auto", "Twist", "TwistStamped"] as const).map((kind) => [kind, texts.types[kind]] as const);
-    const kind = createSelect<TwistKind>(texts.type, kinds, (kind) => this.state.configure({ kind }));
-    kind.value = settings.kind;
+    this.kind = createSelect<TwistKind>(texts.type, kinds, (kind) => this.state.configure({ kind }));
     const rates = RATES.map((rate) => [String(rate), texts.hertz(rate)] as const);
     const rate = createSelect(texts.rateHint, rates, (rateText) => this.state.configure({ rate: Number(rateText) }));
     rate.value = String(settings.rate);
@@ -96,7 +96,7 @@ export class TeleopPanel implements Panel {
       createRow(texts.linear, this.limits.linear, h("span", { class: "unit" }, texts.linearUnit)),
       createRow(texts.angular, this.limits.angular, h("span", { class: "unit" }, texts.angularUnit)),
       createRow(texts.topic, topic),
-      createRow(texts.type, kind),
+      createRow(texts.type, this.kind),
       createRow(texts.frame, frame),
       createRow(texts.rate, rate),
       h("div", { class: "teleop-row" }, gamepad, this.gamepadName),
@@ -109,6 +109,8 @@ export class TeleopPanel implements Panel {
     const { linear, angular } = settings;
     if (document.activeElement !== this.limits.linear) this.limits.linear.value = String(linear);
     if (document.activeElement !== this.limits.angular) this.limits.angular.value = String(angular);
+    if (document.activeElement !== this.topic) this.topic.value = settings.topic;
+    this.kind.value = settings.kind;
     this.aim.textContent = aim === null ? "" : (aim.error ?? `${aim.topic}: ${texts.listeners(aim.subscribers, aim.kind)}`);
     this.aim.classList.toggle("wrong", (aim?.error ?? null) !== null);
     const parts = [`${formatValue(motion.x * linear)} m/s`];

@@ -1,11 +1,8 @@
 import { h } from "../../dom";
 import type { IconName } from "../../icons";
-import type { DisplayState } from "../../state/displays";
+import { isSceneEmpty } from "../../state/displays";
 import type { Session } from "../../state/session";
 import type { DrawingContext } from "../displays/drawing";
-
-/** Display classes that show no data in the scene. */
-const WITHOUT_DATA = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
 
 /** The panel of an Image or Camera display, which is open while the display is enabled, as in RViz. */
 export class OwnPanel {
@@ -61,6 +58,5 @@ export class OwnPanel {
 
 /** Whether the page shows a recording with only its image displays enabled. */
 function showsOnlyImages({ timeline, displays }: Session): boolean {
-  const drawsNothing = (display: DisplayState): boolean => !display.isEnabled || display.isGroup || WITHOUT_DATA.has(display.drawing);
-  return timeline.timeline?.live === false && displays.displays.every(drawsNothing);
+  return timeline.timeline?.live === false && isSceneEmpty(displays);
 }

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from linkwright.cli.command import main as linkwright
 from linkwright.cli.exit_status import FINDINGS, FINE, status_of
 from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
+from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
 from linkwright.process.interruption import raise_interrupts
 
 _FAILURE_STATUS = 255
@@ -68,8 +70,8 @@ def _urdf_to_graphviz(words: Sequence[str]) -> int:
     return linkwright(["diagram", *words])
 
 
-def _rviz2(words: Sequence[str]) -> int:
-    return linkwright(["run", "rviz2", "rviz2", *words])
+def _run(package: str, executable: str, words: Sequence[str]) -> int:
+    return linkwright(["run", package, executable, *words])
 
 
 def _launch_test(words: Sequence[str]) -> int:
@@ -94,7 +96,8 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "xacro": _xacro,
     "check_urdf": _check_urdf,
     "urdf_to_graphviz": _urdf_to_graphviz,
-    "rviz2": _rviz2,
+    "rviz2": partial(_run, "rviz2", "rviz2"),
+    **{executable: partial(_run, package, executable) for package, executable in PANEL_PROGRAMS},
     "launch_test": _launch_test,
     "colcon": _colcon,
 }

@@ -24,7 +24,8 @@ from linkwright.diagnostics import (
     joined,
     phrase,
 )
-from linkwright.hosting.plans import VIEWER, is_viewer
+from linkwright.hosting.plans import VIEWER, opens_page
+from linkwright.hosting.rqt_programs import PANEL_PROGRAMS, instead_of_program
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.unavailable import mark_unavailable
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed, is_substitute
@@ -70,6 +71,8 @@ class Executable:
         """The command that runs the program, as a list of arguments."""
         from linkwright.packages.programs.interpreters import interpreter_words, needs_our_interpreter
 
+        if opens_page(self.package, self.name):
+            return python_command(["-m", "linkwright", "run", self.package, self.name])
         if self.path is None:
             return python_command(["-m", "linkwright.node_program", self.package, self.name])
         if needs_our_interpreter(self.path):
@@ -88,7 +91,7 @@ def is_hosted(package: str | None, executable: str) -> bool:
 
     Such a node can run in the launcher's process.
     """
-    if is_viewer(package, executable):
+    if opens_page(package, executable):
         return True
     from linkwright.nodes import EXECUTABLES
 
@@ -99,7 +102,7 @@ def hosted_executables() -> list[tuple[str, str]]:
     """Return the package and executable of each node that can run in the launcher's process."""
     from linkwright.nodes import EXECUTABLES
 
-    return [*EXECUTABLES, VIEWER]
+    return [*EXECUTABLES, VIEWER, *PANEL_PROGRAMS]
 
 
 def builtin_packages() -> set[str]:
@@ -244,12 +247,18 @@ def _missing_package_error(
     finder: PackageFinder, package: str, name: str, error: PackageNotFoundError
 ) -> LinkwrightError:
     own_packages, workspace_packages = builtin_packages(), finder.packages()
+    instead = instead_of_program(package)
     hint = did_you_mean(package, (*own_packages, *workspace_packages)) or error.diagnostics[0].hint
     message = phrase("package '{package}' of node executable '{name}' was not found", package=package, name=name)
+    if instead is not None:
+        message = phrase("the page has no panel that replaces '{name}'; {instead}", name=name, instead=instead)
+        hint = error.diagnostics[0].hint
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
     launch_error = as_ros_error(KeyError(message), diagnostic)
     return (
-        launch_error if is_misspelled(package, (*own_packages, *workspace_packages)) else mark_unavailable(launch_error)
+        launch_error
+        if instead is None and is_misspelled(package, (*own_packages, *workspace_packages))
+        else mark_unavailable(launch_error)
     )
 
 

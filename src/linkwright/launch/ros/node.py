@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.hosting.plans import HostedPlan, is_viewer
+from linkwright.hosting.plans import HostedPlan, opens_page
 from linkwright.launch.errors.locations import with_location
 from linkwright.launch.errors.unavailable import is_unavailable
 from linkwright.launch.model.action import Action
@@ -339,7 +339,7 @@ class Node(ExecuteProcess):
 
     def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
         """Return whether the node can run in the launcher's process."""
-        if is_viewer(package, executable):
+        if opens_page(package, executable):
             return True
         if context.session.isolates_nodes or self.__own_environment[0] is not None:
             return False

@@ -20,7 +20,14 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile
 
+_RQT_PACKAGES = (
+    *("rqt_console", "rqt_graph", "rqt_gui", "rqt_image_view", "rqt_plot", "rqt_reconfigure", "rqt_robot_steering"),
+    *("rqt_tf_tree", "rqt_topic"),
+)
+"""The packages of rqt that each have one executable, which has the name of the package."""
+
 EXTERNAL_EXECUTABLES = {
+    **{name: frozenset({name}) for name in _RQT_PACKAGES},
     "rviz2": frozenset({"rviz2"}),
     "xacro": frozenset({"xacro"}),
     "controller_manager": frozenset({"ros2_control_node", "spawner", "unspawner", "hardware_spawner"}),
@@ -47,7 +54,8 @@ WELL_KNOWN_PACKAGES = frozenset(
             "nav2_bringup",
         ),
         *("robot_localization", "teleop_twist_joy", "teleop_twist_keyboard", "joy", "moveit_ros_move_group"),
-        *("diff_drive_controller", "joint_state_broadcaster", "launch_ros", "rqt_gui", "image_transport"),
+        *("diff_drive_controller", "joint_state_broadcaster", "launch_ros", "image_transport"),
+        *("rqt_controller_manager", "rqt_joint_trajectory_controller", "rqt_publisher", "rqt_service_caller"),
     }
 )
 _PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "launch_xml", "launch_yaml", "xacro"})

@@ -1,0 +1,84 @@
+import type { Connection } from "../connection/connection";
+import type { RequestedPanel } from "../protocol";
+import type { MonitorState } from "../state/monitor/monitor";
+import type { Plot } from "../state/monitor/plots";
+import type { PanelId } from "./panel";
+
+/** The parts of the page that requested panels use. */
+export interface PanelOpener {
+  open(id: PanelId): void;
+  /** Brings the panel of a display to the front, now or as soon as the display has one. */
+  openDisplayPanel(display: string): void;
+  /** Shows the row of a display in the Displays panel, if the configuration of this page has the display. */
+  revealDisplay(display: string): void;
+}
+
+/** Opens the panels that programs such as rqt_plot request, each once in a run of the program. */
+export class RequestedPanels {
+  private run = "";
+  private readonly opened = new Set<number>();
+  private readonly plots = new Map<number, Plot>();
+
+  constructor(
+    connection: Connection,
+    private readonly monitor: MonitorState,
+    private readonly opener: PanelOpener,
+  ) {
+    connection.on("hello", ({ run }) => {
+      if (run === this.run) return;
+      this.run = run;
+      this.opened.clear();
+      this.plots.clear();
+    });
+    connection.on("requested_panels", ({ panels }) => panels.forEach((panel) => this.apply(panel)));
+  }
+
+  private apply(panel: RequestedPanel): void {
+    if (!this.opened.has(panel.number)) {
+      this.opened.add(panel.number);
+      this.open(panel);
+    }
+    this.plot(panel);
+  }
+
+  private open({ panel, display, node, velocities }: RequestedPanel): void {
+    const { parameters, teleop } = this.monitor;
+    if (node !== null) parameters.choose(node);
+    if (velocities) {
+      const { topic, stamped, linear, angular } = velocities;
+      teleop.configure({
+        topic,
+        ...(stamped === null ? {} : { kind: stamped ? "TwistStamped" : "Twist" }),
+        ...(linear === null ? {} : { linear }),
+        ...(angular === null ? {} : { angular }),
+      });
+    }
+    if (panel === "image") {
+      if (display !== null) this.opener.openDisplayPanel(display);
+      return;
+    }
+    this.opener.open(panel);
+    if (display !== null) this.opener.revealDisplay(display);
+  }
+
+  /** Adds the requested series to the plot of the panel, which may be one of the last visit. */
+  private plot({ number, series }: RequestedPanel): void {
+    if (series.length === 0) return;
+    const { plots } = this.monitor;
+    const known = this.plots.get(number);
+    const plot =
+      (known && plots.plots.includes(known) ? known : undefined) ??
+      plots.plots.find((candidate) => isPart(candidate, series)) ??
+      plots.plots.find((candidate) => candidate.series.length === 0) ??
+      plots.addPlot();
+    this.plots.set(number, plot);
+    for (const field of series) plots.addSeries(plot, field);
+  }
+}
+
+/** Returns whether a plot has series, all of which are requested. */
+function isPart(plot: Plot, requested: RequestedPanel["series"]): boolean {
+  const isRequested = (name: { topic: string; path: string }): boolean =>
+    requested.some(({ topic, path }) => topic === name.topic && path === name.path);
+  return plot.series.length > 0 && plot.series.every(isRequested);
+}

@@ -1,0 +1,79 @@
+"""The nodes of rqt's programs, whose windows are panels of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import count
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.graph import Graph
+from linkwright.hosting.plans import HostedPlan
+from linkwright.hosting.rqt_arguments import RqtArguments, read_rqt_arguments
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node
+from linkwright.panels.panel_request import PanelRequest
+
+_NUMBERS = count(1)
+_DEFAULT_VELOCITY_TOPIC = "/cmd_vel"
+
+
+class PanelNode(SingleNode):
+    """The node of a program of rqt that opens a panel.
+
+    The panel itself belongs to the viewer. The node has the name, parameters and remappings of the program.
+
+    Args:
+        graph: the graph to which the node is added.
+        plan: the plan of the program; its `panel_program` is not None.
+        options: the options of the node.
+
+    Attributes:
+        request: the panel to open; None if the page opens as it is.
+        findings: the findings about arguments without an effect.
+
+    Raises:
+        LinkwrightError: a name, a remapping or a ROS argument is not valid.
+    """
+
+    def __init__(self, graph: Graph, plan: HostedPlan, options: NodeOptions) -> None:
+        program = plan.panel_program
+        assert program is not None
+        default_name = f"rqt_gui_node_{next(_NUMBERS)}"  # the Node graph panel hides this name, as rqt_graph does
+        self._node, own_arguments = create_node(graph, options, default_name, any_parameters=True)
+        arguments = read_rqt_arguments(plan.executable, program, own_arguments)
+        self.findings: list[Diagnostic] = arguments.findings
+        self.request = self._panel_request(arguments)
+
+    def _panel_request(self, arguments: RqtArguments) -> PanelRequest | None:
+        program, values = arguments.program, arguments.values
+        if program.panel == "teleop":
+            topic = self._parameter("default_topic", str, str) or _DEFAULT_VELOCITY_TOPIC
+            return PanelRequest(
+                program.panel,
+                topic=self._node.resolve_topic_name(topic),
+                stamped=self._parameter("default_stamped", bool, bool),
+                linear=self._parameter("default_vx_max", (int, float), float),
+                angular=self._parameter("default_vw_max", (int, float), float),
+            )
+        if program.takes == "topic" and not values:  # the user chooses the topic in the list of displays
+            return PanelRequest("displays", program.display_class)
+        return (
+            PanelRequest(
+                program.panel,
+                program.display_class,
+                topic=self._node.resolve_topic_name(values[0]) if program.takes == "topic" else "",
+                fields=tuple(map(self._absolute, values)) if program.takes == "fields" else (),
+                node=self._absolute(values[0]) if program.takes == "node" and values else "",
+            )
+            if program.panel
+            else None
+        )
+
+    def _absolute(self, name: str) -> str:
+        """Return a name with the namespace of the node, unless it begins with a slash."""
+        return name if name.startswith("/") else f"{self._node.get_namespace().rstrip('/')}/{name}"
+
+    def _parameter(self, name: str, types: type | tuple[type, ...], convert: Callable[[Any], Any]) -> Any:
+        """Return the value of a parameter, or None if it is not set or has another type."""
+        value = self._node.get_parameter(name).value if self._node.has_parameter(name) else None
+        return convert(value) if isinstance(value, types) else None

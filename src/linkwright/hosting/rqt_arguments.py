@@ -1,0 +1,126 @@
+"""Parser for the arguments of rqt's programs that open a panel of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, phrase
+from linkwright.hosting.rqt_programs import PanelProgram, instead_of_program, program_of_plugin
+
+_IGNORED_OPTIONS: Mapping[str, int] = {
+    "-f": 0,
+    "--freeze-layout": 0,
+    "--force-discover": 0,
+    "-l": 0,
+    "--lock-perspective": 0,
+    "-ht": 0,
+    "--hide-title": 0,
+    "-t": 0,
+    "--on-top": 0,
+    "-m": 0,
+    "--multi-thread": 0,
+    "-q": 0,
+    "--quiet": 0,
+    "-v": 0,
+    "--verbose": 0,
+    "--clear-config": 0,
+    "--qt-binding": 1,
+}
+"""The options of all programs of rqt that have no effect here, each with the number of its values."""
+
+_PERSPECTIVE_OPTIONS = ("-p", "--perspective", "--perspective-file")
+_STANDALONE_OPTIONS = ("-s", "--standalone")
+_PLUGIN_ARGUMENTS = "--args"
+
+_POSITIONAL_ARGUMENTS = {"": "", "topic": " [TOPIC]", "fields": " [TOPIC/FIELD[:FIELD ...] ...]", "node": " [NODE]"}
+
+
+@dataclass
+class RqtArguments:
+    """The arguments of a program of rqt.
+
+    Attributes:
+        program: the program whose panel opens, which an option may select.
+        values: the positional arguments: a topic, fields to plot, or a node.
+        findings: the findings about arguments without an effect.
+    """
+
+    program: PanelProgram
+    values: list[str] = field(default_factory=list)
+    findings: list[Diagnostic] = field(default_factory=list)
+
+    def warn(self, message: Phrase, hint: Phrase | None = None) -> None:
+        """Add a finding about an argument."""
+        self.findings.append(Diagnostic("LAUNCH144", message, hint=hint).with_changes(severity=Severity.WARNING))
+
+
+def usage(executable: str, program: PanelProgram) -> str:
+    """Return the help text of a program.
+
+    Args:
+        executable: the name of the program.
+        program: the program.
+    """
+    plugin = "" if program.panel else " [-s PLUGIN]"
+    return f"""\
+usage: {executable}{plugin}{_POSITIONAL_ARGUMENTS[program.takes]} [--ros-args ...]
+
+Opens the page with the panel that replaces the window of {executable}.
+"""
+
+
+def read_rqt_arguments(executable: str, program: PanelProgram, arguments: Sequence[str]) -> RqtArguments:
+    """Return the arguments of a program of rqt. Arguments without an effect are findings.
+
+    Args:
+        executable: the name of the program.
+        program: the program.
+        arguments: the command line without ROS arguments.
+    """
+    read = RqtArguments(program)
+    is_for_plugin = False
+    remaining_arguments = iter(arguments)
+    for argument in remaining_arguments:
+        ignored_options = {**_IGNORED_OPTIONS, **read.program.ignored_options}
+        known_options = (*_STANDALONE_OPTIONS, *_PERSPECTIVE_OPTIONS, *ignored_options)
+        if argument == _PLUGIN_ARGUMENTS and not is_for_plugin:
+            is_for_plugin = True
+        elif argument in ignored_options:
+            for _ in range(ignored_options[argument]):
+                next(remaining_arguments, None)
+        elif argument in _STANDALONE_OPTIONS or argument in _PERSPECTIVE_OPTIONS:
+            value = next(remaining_arguments, None)
+            if value is None:
+                read.warn(
+                    phrase("argument '{argument}' of {program} needs a value", argument=argument, program=executable)
+                )
+            elif argument in _STANDALONE_OPTIONS:
+                _select_plugin(read, value)
+            else:
+                read.warn(
+                    phrase("{program} ignores the perspective '{value}'", program=executable, value=value),
+                    phrase("arrange the panels in the page, which keeps the arrangement"),
+                )
+        elif argument and not argument.startswith("-") and _takes_another_value(read):
+            read.values.append(argument)
+        elif argument:
+            read.warn(
+                phrase("{program} has no argument '{argument}'", program=executable, argument=argument),
+                did_you_mean(argument, known_options),
+            )
+    return read
+
+
+def _takes_another_value(read: RqtArguments) -> bool:
+    return read.program.takes == "fields" or (read.program.takes != "" and not read.values)
+
+
+def _select_plugin(read: RqtArguments, plugin: str) -> None:
+    program = program_of_plugin(plugin)
+    if program is None:
+        read.warn(
+            phrase("the page has no panel for the rqt plugin '{plugin}'", plugin=plugin), instead_of_program(plugin)
+        )
+    else:
+        read.program = program

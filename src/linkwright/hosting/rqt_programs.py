@@ -1,0 +1,102 @@
+"""The programs of rqt that open a panel of the page, and the programs whose panel the page does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+from linkwright.diagnostics import Phrase, phrase
+
+NO_OPTIONS: Mapping[str, int] = MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class PanelProgram:
+    """A program of rqt, and the panel that it opens.
+
+    Attributes:
+        panel: the name of the panel in the page; empty if the page opens as it is.
+        display_class: the class of the display that the panel needs; empty if it needs none.
+        takes: the meaning of the positional arguments: a topic, fields to plot, a node, or none.
+        ignored_options: the options that are accepted without an effect, each with the number of its values.
+    """
+
+    panel: str
+    display_class: str = ""
+    takes: Literal["", "topic", "fields", "node"] = ""
+    ignored_options: Mapping[str, int] = field(default=NO_OPTIONS)
+
+
+PANEL_PROGRAMS: Mapping[tuple[str, str], PanelProgram] = MappingProxyType(
+    {
+        ("rqt", "rqt"): PanelProgram(""),
+        ("rqt_console", "rqt_console"): PanelProgram("log"),
+        ("rqt_graph", "rqt_graph"): PanelProgram("graph"),
+        ("rqt_gui", "rqt_gui"): PanelProgram(""),
+        ("rqt_image_view", "rqt_image_view"): PanelProgram("image", "rviz_default_plugins/Image", "topic"),
+        ("rqt_plot", "rqt_plot"): PanelProgram(
+            "plot", takes="fields", ignored_options={"-P": 0, "--pause": 0, "-e": 0, "--empty": 0, "-b": 1}
+        ),
+        ("rqt_reconfigure", "rqt_reconfigure"): PanelProgram("parameters", takes="node"),
+        ("rqt_robot_steering", "rqt_robot_steering"): PanelProgram("teleop"),
+        ("rqt_tf_tree", "rqt_tf_tree"): PanelProgram("displays", "rviz_default_plugins/TF"),
+        ("rqt_topic", "rqt_topic"): PanelProgram("topics"),
+    }
+)
+"""The programs that open a panel, by package and executable."""
+
+MISSING_PROGRAMS: Mapping[str, Phrase] = MappingProxyType(
+    {
+        "rqt_action": phrase("run `ros2 action list -t` and `ros2 interface show TYPE`"),
+        "rqt_bag": phrase(
+            "record with the button in the page's time line or with `ros2 bag record`, "
+            "and open a recording with `linkwright view FILE`"
+        ),
+        "rqt_controller_manager": phrase("run `ros2 control list_controllers` and `ros2 control switch_controllers`"),
+        "rqt_joint_trajectory_controller": phrase(
+            "run `ros2 action send_goal CONTROLLER/follow_joint_trajectory "
+            "control_msgs/action/FollowJointTrajectory GOAL`"
+        ),
+        "rqt_msg": phrase("run `ros2 interface show TYPE`"),
+        "rqt_publisher": phrase("run `ros2 topic pub TOPIC TYPE VALUES`"),
+        "rqt_robot_monitor": phrase("open the panel Topics of the page, or run `ros2 topic echo /diagnostics_agg`"),
+        "rqt_runtime_monitor": phrase("open the panel Topics of the page, or run `ros2 topic echo /diagnostics`"),
+        "rqt_service_caller": phrase("run `ros2 service call SERVICE TYPE VALUES`"),
+        "rqt_shell": phrase("add `--terminal` to the command that opens the page, which then has a terminal"),
+        "rqt_srv": phrase("run `ros2 interface show TYPE`"),
+    }
+)
+"""The replacements of programs whose panel the page does not have, by package."""
+
+_OTHER_PROGRAMS = phrase(
+    "open Panels in the title bar of the page, which has the panels of rqt_graph, rqt_plot and others"
+)
+
+
+def panel_program(package: str | None, executable: str) -> PanelProgram | None:
+    """Return the program with a package and an executable, or None if it opens no panel."""
+    return None if package is None else PANEL_PROGRAMS.get((package, executable))
+
+
+def program_of_plugin(plugin: str) -> PanelProgram | None:
+    """Return the program that shows a plugin of rqt, or None if the page has no such panel.
+
+    Args:
+        plugin: a name as ``rqt --standalone`` accepts it: ``rqt_graph``, ``rqt_graph.ros_graph.RosGraph``, or
+            ``rqt_image_view/ImageView``.
+    """
+    package = plugin.partition("/")[0].partition(".")[0]
+    return PANEL_PROGRAMS.get((package, package))
+
+
+def instead_of_program(package: str) -> Phrase | None:
+    """Return the replacement of a program of rqt that is missing, or None for other packages.
+
+    Args:
+        package: the package of the program.
+    """
+    if not package.startswith("rqt"):
+        return None
+    return MISSING_PROGRAMS.get(package.partition("/")[0].partition(".")[0], _OTHER_PROGRAMS)
