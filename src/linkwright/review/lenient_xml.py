@@ -1,4 +1,4 @@
-"""XML files that ROS reads with TinyXML2, which accepts more than XML allows."""
+"""Read XML files as TinyXML2 does, which accepts more than XML allows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shell scripts and launch files that pass arguments which a program in Python does not read any more."""
+"""Find shell scripts and launch files that pass arguments which a Python program no longer reads."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _REMAPPING = re.compile(r"[^\s=]*:=\S*")
 
 
 def lost_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the shell scripts and launch files that pass what a changed program does not take, each with a change.
+    """Yield the shell scripts and launch files that pass unknown arguments to a changed program, each with a change.
 
     A program took positional arguments if its old version reads ``sys.argv`` by an index. Options of argparse are
     compared for shell scripts; see `refused_options` for launch files.
@@ -103,7 +103,7 @@ def _called(version: Version, line: str, changed: Sequence[str]) -> tuple[str, l
 
 
 def _words(text: str) -> list[str]:
-    """Return the arguments in the rest of a command, without those for ROS."""
+    """Return the arguments in the rest of a command, without ROS arguments."""
     text = _END.sub("", f" {text}")
     try:
         words = shlex.split(text)

@@ -189,7 +189,7 @@ class _Side:
         if package is None or kind is None:
             return None
         for other, names in self._names.items():
-            if self.package(other) == package and any(is_same_topic(item, each) for each in names.of_kind(kind)):
+            if self.package(other) == package and any(is_same_topic(item, user) for user in names.of_kind(kind)):
                 return other
         return self._unchanged(package).user(item)
 
@@ -436,9 +436,9 @@ class _Pair:
     def _expression_types(self, old: Sequence[SourceName], new: Sequence[SourceName]) -> Iterator[Change]:
         """Yield the names with the same expression but another type, if only one name has the expression."""
         for item in new:
-            same = [[each for each in items if each.name == item.name] for items in (old, new)]
+            same = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
             if len(same[0]) == len(same[1]) == 1 and same[0][0].type != item.type and same[0][0].type and item.type:
-                ((_, text, reason),) = ((item, *each) for each in detail_changes(same[0][0], item))
+                ((_, text, reason),) = ((item, *change) for change in detail_changes(same[0][0], item))
                 yield self._change(text, item.span, self.new, reason)
 
     def _changed_pattern(self, old: SourceName, new: SourceName) -> Iterator[Change]:

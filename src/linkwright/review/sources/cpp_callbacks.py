@@ -1,4 +1,4 @@
-"""The types of messages that callbacks of subscriptions in C++ take."""
+"""Read the message types of subscriptions from their C++ callbacks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PARAMETER = re.compile(r"(?P<type>.*?[\s&*>])?(?P<name>\w*)", re.DOTALL)
 
 
 def message_type(function: str, texts: Iterable[str]) -> str:
-    """Return the type of the messages that a callback takes, without its package; empty if it is not known.
+    """Return the message type of a callback, without its package; empty if it is unknown.
 
     Args:
         function: the name of the function without its class.

@@ -1,4 +1,4 @@
-"""The files in C++ that still use a class or structure that a header they include no longer has."""
+"""Find C++ files that use a class or structure which an included header no longer declares."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', 
 
 
 def lost_types(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the files that use a type which a header of the repository no longer has, each with a change.
+    """Yield the files that use a type which a header lost, each with a change.
 
     Types that another file of the repository declares are left out, as are files that do not include the header.
     """
@@ -39,7 +39,7 @@ def lost_types(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iter
 
 
 def _declared(names: Sequence[str], codes: Iterable[str]) -> set[str]:
-    """Return the names that a file declares, whatever they name there."""
+    """Return the names that a file declares, as any kind of thing."""
     any_name = "|".join(map(re.escape, names))
     pattern = re.compile(
         rf"\b(?:class|struct|union|enum|typename|define|using)\s+(?:[A-Z]\w*_\w+\s+|class\s+|struct\s+|(?:\w+::)+)?"
@@ -51,10 +51,10 @@ def _declared(names: Sequence[str], codes: Iterable[str]) -> set[str]:
 def _uses(
     path: str, code: str, header: str, names: Sequence[str], scopes: Collection[str]
 ) -> Iterator[tuple[str, Change]]:
-    """Yield a change for the first use of each of the names in a file, also if a scope of the header is before it."""
+    """Yield a change for the first use of each name in a file, with or without a scope of the header."""
     for name in names:
         pattern = re.compile(rf"(?<![\w.>:])(?:(?P<scope>\w+)::)*{name}\b(?=\s*(?:[&*]\s*|\s)\w|\s*::|\s*[>&*])")
-        use = next((each for each in pattern.finditer(code) if each["scope"] in (None, *scopes)), None)
+        use = next((match for match in pattern.finditer(code) if match["scope"] in (None, *scopes)), None)
         if use is not None:
             yield path, _change(path, header, name, code[: use.start()].count("\n") + 1)
 

@@ -1,4 +1,4 @@
-"""Names in sources that are made from a pattern, such as an f-string or the format of ``snprintf``."""
+"""Read names that sources make from a pattern, such as an f-string or the format of ``snprintf``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ _TEXT = re.compile(r"\"(?P<double>(?:\\.|[^\"\\])*)\"|'(?P<single>(?:\\.|[^'\\])
 _FORMATTED = re.compile(r"\b[fF][rR]?[\"']|\b[rR][fF][\"']")
 _PLACE = re.compile(r"\{[^{}]*\}|%[-+ #0]*\d*(?:\.\d+)?[hlzjt]*[a-zA-Z]|%\(\w+\)[a-z]")
 _OPEN = "{}"
-"""The mark for a part of a pattern whose value is not known."""
+"""The mark for a part of a pattern with an unknown value."""
 
 
 def pattern_of(expression: str) -> str | None:
@@ -25,7 +25,7 @@ def pattern_of(expression: str) -> str | None:
 
 
 def format_of(text: str, variable: str) -> str | None:
-    """Return the last format that a source in C++ writes into a text, as a literal with quotation marks, or None.
+    """Return the last format that a C++ source writes into a text, as a literal with quotation marks, or None.
 
     Args:
         text: the source up to the use of the variable, without comments.

@@ -1,4 +1,4 @@
-"""The methods of classes in Python that the class itself calls although nothing defines them."""
+"""Find undefined methods that Python classes call on themselves."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def defined_attributes(tree: ast.AST) -> Iterator[str]:
 
 
 def undefined_methods(tree: ast.Module) -> dict[str, ast.Attribute]:
-    """Return the first call of each method that a class calls on itself although the source does not define it.
+    """Return the first call of each undefined method that a class calls on itself.
 
     Classes with base classes of other files, which may define the method, are left out.
     """
@@ -43,7 +43,7 @@ def undefined_methods(tree: ast.Module) -> dict[str, ast.Attribute]:
 
 
 def _is_complete(definition: ast.ClassDef, classes: Mapping[str, ast.ClassDef], depth: int = 0) -> bool:
-    """Return whether a class and its base classes are those of a source alone."""
+    """Return whether the source defines a class and all of its base classes."""
     if definition.decorator_list or definition.keywords or depth > len(classes):
         return False
     names = [ast.unparse(base) for base in definition.bases if ast.unparse(base) != "object"]

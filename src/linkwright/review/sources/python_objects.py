@@ -1,4 +1,4 @@
-"""Calls of methods in Python that the class of the object does not have, if another module defines the class."""
+"""Find Python calls of methods that an imported class does not have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sources of a package that a range of commits leaves as they are, and the names in them."""
+"""Search the unchanged sources of a package for names."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _COUNTERPARTS = {
 
 
 class UnchangedSources:
-    """The sources of a package that no commit of a range changes, except tests, launch files and unbuilt copies.
+    """The unchanged sources of a package, without tests, launch files and unbuilt copies.
 
     Args:
         version: the version.
@@ -51,7 +51,7 @@ class UnchangedSources:
         self._names: dict[str, SourceNames] = {}
 
     def has_text(self, name: str) -> bool:
-        """Return whether one of the sources has a text in quotes."""
+        """Return whether one of the sources contains a text in quotation marks."""
         return any(True for _ in self._paths_with(name))
 
     def has_same(self, item: SourceName) -> bool:
@@ -60,11 +60,11 @@ class UnchangedSources:
         return any(item.name == other.name for path in paths for other in self._of(path, item.kind))
 
     def user(self, item: SourceName) -> str | None:
-        """Return the path of a source with the other end of a topic, service or action, or None if there is none."""
+        """Return the path of a source that uses the other end of a topic, service or action, or None for none."""
         kind = _COUNTERPARTS[item.kind]
         names = dict.fromkeys((item.name, item.name.lstrip("/"), f"/{item.name}"))
         paths = (path for name in names for path in self._paths_with(name))
-        return next((path for path in paths if any(is_same_topic(item, each) for each in self._of(path, kind))), None)
+        return next((path for path in paths if any(is_same_topic(item, other) for other in self._of(path, kind))), None)
 
     def _of(self, path: str, kind: NameKind) -> Iterator[SourceName]:
         if path not in self._names:
@@ -95,7 +95,7 @@ class UnchangedSources:
 
     @cached_property
     def _python_folders(self) -> list[PurePosixPath] | None:
-        """The files and folders in Python that the package installs, or None if they are not known."""
+        """The Python files and folders that the package installs, or None if they are unknown."""
         facts = package_facts(self._version, self._package)
         has_cmake = self._version.file(f"{self._package}/{CMAKE_FILE}".lstrip("/")).is_file()
         if has_cmake or facts is None or not facts.is_complete:
@@ -106,7 +106,7 @@ class UnchangedSources:
 
     @cached_property
     def _built_sources(self) -> frozenset[str] | None:
-        """The sources in C++ that the package builds, or None if they are not known."""
+        """The C++ sources that the package builds, or None if they are unknown."""
         facts = package_facts(self._version, self._package)
         text = self._version.text(f"{self._package}/{CMAKE_FILE}".lstrip("/"))
         if facts is None or not facts.targets or _SEARCHES.search(text):
@@ -126,10 +126,10 @@ def is_same_topic(item: SourceName, other: SourceName) -> bool:
 
 
 def user_reason(kind: NameKind, path: str, name: str) -> Phrase:
-    """Return why it is breaking that a name is gone which another source of the package still uses.
+    """Return the reason why removing a name is breaking while another source of the package uses it.
 
     Args:
-        kind: the kind of the name that is gone.
+        kind: the kind of the removed name.
         path: the path of the other source.
         name: the name.
     """
