@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
-from functools import cached_property
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
-from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.callbacks import with_same_callback
+from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, comparison_name
 from linkwright.review.sources.changed_values import value_changes
-from linkwright.review.sources.code import Code, read_code
+from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import code_change
 from linkwright.review.sources.details import detail_changes
 from linkwright.review.sources.name_patterns import pattern_of
@@ -31,10 +29,10 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
-from linkwright.review.sources.reading import is_program_text, read_source_names, try_read_source
+from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
-from linkwright.review.sources.unchanged_sources import UnchangedSources, counterpart, is_same_topic, user_reason
-from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+from linkwright.review.sources.unchanged_sources import user_reason
+from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _SKIPPED = frozenset({"setup.py", "conf.py"})
 _MAX_ARGUMENTS = 80
@@ -49,15 +47,8 @@ _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal characters of similar names of the same kind."""
 _MAX_COMPARED = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
-_USED = (
-    *(NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT),
-    *(NameKind.ACTION, NameKind.ACTION_CLIENT),
-)
-"""The kinds of names by which a node communicates."""
 _DECLARED = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
-_LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
-"""The kinds whose names may mean another thing in another source."""
 
 
 def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
@@ -68,8 +59,8 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     """
     files = [file for file in changed_files if _is_source(versions, file)]
     sides = (
-        _Side(versions.old, [file.old_path for file in files]),
-        _Side(versions.new, [file.new_path for file in files]),
+        ChangedSources(versions.old, [file.old_path for file in files]),
+        ChangedSources(versions.new, [file.new_path for file in files]),
     )
     for file in files:
         pair = _Pair(*sides, file)
@@ -89,125 +80,6 @@ def _is_source(versions: Versions, file: ChangedFile) -> bool:
     return is_program_text(version.file(file.path))
 
 
-class _Side:
-    """The names in the changed sources of a version.
-
-    Args:
-        version: the version of the repository.
-        paths: the paths of the sources; None for a source that the version lacks.
-    """
-
-    def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
-        self.version = version
-        self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
-        self._others: dict[str, UnchangedSources] = {}
-
-    def names(self, path: str | None) -> SourceNames:
-        """Return the names in a changed source."""
-        return self._names.get(path, SourceNames()) if path is not None else SourceNames()
-
-    @cached_property
-    def codes(self) -> Mapping[str, Code]:
-        """The code of the changed sources, by path."""
-        sources = {path: try_read_source(self.version.file(path)) for path in self._names}
-        return {path: read_code(source) for path, source in sources.items() if source is not None}
-
-    def has_function(self, name: str, code: Code, path: str) -> bool:
-        """Return whether another changed source has a function with the same name and code.
-
-        Args:
-            name: the qualified name of the function.
-            code: the code that contains the function.
-            path: the path of the source to skip.
-        """
-        short, body = re.split(r"\.|::", name)[-1], code.body(name)
-        return any(
-            re.split(r"\.|::", function)[-1] == short and other.body(function) == body
-            for other_path, other in self.codes.items()
-            if other_path != path
-            for function in other.functions
-        )
-
-    @cached_property
-    def _known(self) -> frozenset[tuple[NameKind, str]]:
-        return frozenset((item.kind, _comparison_name(item)) for names in self._names.values() for item in names.names)
-
-    @cached_property
-    def _functions(self) -> frozenset[str]:
-        overrides = {name for names in self._names.values() for name in names.overrides}
-        declared = {name.rpartition("::")[2] for kind, name in self._known if kind is NameKind.FUNCTION}
-        return frozenset(overrides | declared)
-
-    @cached_property
-    def _expressions(self) -> list[tuple[NameKind, str]]:
-        return [(item.kind, item.type) for names in self._names.values() for item in names.expressions]
-
-    def count(self, item: SourceName) -> int:
-        """Return the number of expressions in changed sources with the same kind and type."""
-        return self._expressions.count((item.kind, item.type))
-
-    def lacks_in_changed(self, item: SourceName, path: str) -> bool:
-        """Return whether no changed source except this one has a name, so that the name has not moved."""
-        others = (names for other, names in self._names.items() if other != path)
-        return not any(
-            (known.kind, _comparison_name(known)) == (item.kind, _comparison_name(item))
-            for names in others
-            for known in names.names
-        )
-
-    def lacks(self, item: SourceName, path: str) -> bool:
-        """Return whether neither a changed source nor another source of the same package has a name.
-
-        Args:
-            item: the name to search for.
-            path: the path of a source of the package.
-        """
-        if item.kind is NameKind.IMPORT:
-            return True
-        if (item.kind, _comparison_name(item)) in self._known:
-            return False
-        if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._functions:
-            return False  # in a base class, for example
-        if item.kind in _LOCAL:
-            return True
-        package = self.package(path)
-        if package is None:
-            return True
-        if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
-            return False
-        others = self._unchanged(package)
-        return not (others.has_same(item) if item.kind in _USED else others.has_text(item.name))
-
-    def keeps(self, item: SourceName, path: str) -> bool:
-        """Return whether an unchanged source of the same package has a topic, service or action of the same kind."""
-        package = self.package(path) if item.kind in _USED else None
-        return package is not None and self._unchanged(package).has_same(item)
-
-    def user(self, item: SourceName, path: str) -> str | None:
-        """Return a source of the same package with the other end of a topic, service or action, or None."""
-        package, kind = self.package(path), counterpart(item.kind)
-        if package is None or kind is None:
-            return None
-        for other, names in self._names.items():
-            if self.package(other) == package and any(is_same_topic(item, user) for user in names.of_kind(kind)):
-                return other
-        return self._unchanged(package).user(item)
-
-    def package(self, path: str) -> str | None:
-        """Return the folder of the package of a file, or None for a file outside of packages."""
-        return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
-
-    def _unchanged(self, package: str) -> UnchangedSources:
-        if package not in self._others:
-            self._others[package] = UnchangedSources(self.version, package, self._names)
-        return self._others[package]
-
-    def _generates(self, name: str, path: str) -> bool:
-        """Return whether a parameter description beside a source, from which code is generated, has a parameter."""
-        files = self.version.file(path).parent.glob("*.y*ml")
-        return any(f"{name.rpartition('.')[2]}:" in file.read_text("utf-8", errors="replace") for file in files)
-
-
 @dataclass(frozen=True)
 class _Pair:
     """Both versions of a changed source.
@@ -218,8 +90,8 @@ class _Pair:
         file: the source.
     """
 
-    old: _Side
-    new: _Side
+    old: ChangedSources
+    new: ChangedSources
     file: ChangedFile
 
     def changes(self) -> Iterator[Change]:
@@ -277,8 +149,8 @@ class _Pair:
             yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
 
     def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        before = {_comparison_name(item): item for item in old_names.of_kind(kind)}
-        after = {_comparison_name(item): item for item in new_names.of_kind(kind)}
+        before = {comparison_name(item): item for item in old_names.of_kind(kind)}
+        after = {comparison_name(item): item for item in new_names.of_kind(kind)}
         changed = [(item, *detail) for name, item in after.items() if name in before
                    for detail in detail_changes(before[name], item)]  # fmt: skip
         yield from self._detail_changes(kind, changed, old_names)
@@ -287,7 +159,7 @@ class _Pair:
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
         is_lacking = self.old.lacks
-        if self.file.old_path is None and kind in _USED and any(new_names.of_kind(NameKind.NODE)):
+        if self.file.old_path is None and kind in COMMUNICATION_KINDS and any(new_names.of_kind(NameKind.NODE)):
             is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
@@ -490,15 +362,10 @@ class _Pair:
                 yield self._change(text, span, self.new, phrase("the call fails"))
 
     @staticmethod
-    def _change(text: Phrase, span: Span, side: _Side, reason: Phrase | None) -> Change:
+    def _change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
-
-
-def _comparison_name(item: SourceName) -> str:
-    """Return the name by which versions are compared. In ROS 1, a private name may lack the ``~``."""
-    return item.name.lstrip("~/") if item.kind is NameKind.PARAMETER else item.name
 
 
 def _is_number(rate: str) -> bool:
