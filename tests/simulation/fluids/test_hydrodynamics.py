@@ -93,8 +93,8 @@ async def test_body_drifts_with_current_of_parameter_and_topic():
 
 
 async def test_derivative_that_is_not_a_number_is_reported():
-    async with weightless_server(body(hydrodynamics("<xU>strong</xU>"))) as (_, __, log):
-        assert any("<plugin> needs a number in <xU>" in record.text for record in log)
+    async with weightless_server(body(hydrodynamics("\n<xU>strong</xU>"))) as (_, __, log):
+        assert any("test.world:2:1: " in r.text and "<plugin> needs a number in <xU>" in r.text for r in log)
 
 
 # --- thrusters --------------------------------------------------------------------------------------------------------

@@ -248,12 +248,13 @@ class SimulatedPlugin(Generic[P]):
         """The running plugins and sensors of the top-level model that contains the plugin."""
         return self._environment.plugins(self.context.path.partition(SEPARATOR)[0])
 
-    def parameter_error(self, message: Phrase) -> LinkwrightError:
+    def parameter_error(self, message: Phrase, element: Element | None = None) -> LinkwrightError:
         """Return the error SIM160, to raise in `start` for contradictory parameters.
 
-        Parameters may contradict each other or the model.
+        Parameters may contradict each other or the model. The location of the error is `element`, or by default the
+        element of the plugin.
         """
-        element = self.context.element
+        element = self.context.element if element is None else element
         if element is None:
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
@@ -287,7 +288,8 @@ class SimulatedPlugin(Generic[P]):
                     plugin=self.context.name,
                     parent="plugin" if parent is None else parent.tag,
                     tag=tag,
-                )
+                ),
+                parent if child is None else child,
             ) from error
 
     def close(self, on_error: Callable[[Exception], object]) -> None:
