@@ -53,7 +53,7 @@ export class ToolsState {
     return this.activeTool;
   }
 
-  /** The default tool: the first one. */
+  /** The default tool: the first supported one. */
   get default(): ToolState | null {
     return this.tools.find((tool) => tool.isSupported) ?? null;
   }

@@ -50,7 +50,7 @@ class RayCluster:
         self._ray = ray
 
     def share(self, value: object) -> Any:
-        """Copy a value to the cluster, and return a reference, which tasks receive as the value."""
+        """Copy a value to the cluster, and return a reference, which Ray replaces with the value in tasks."""
         return self._ray.put(value)
 
     def run_tasks(

@@ -126,8 +126,5 @@ def new_unsupported_settings(environment: Mapping[str, str] | None = None) -> li
 
 
 def _is_security_enabled(variables: Mapping[str, str]) -> bool:
-    """Return whether rcl would enable security.
-
-    The variable must have exactly this spelling.
-    """
+    """Return whether rcl would enable security, which requires exactly the value ``true``."""
     return variables.get("ROS_SECURITY_ENABLE") == "true"

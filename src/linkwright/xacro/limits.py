@@ -123,7 +123,7 @@ class Budget:
         return Fault("XAC602", message, hint=phrase("look for macros that call each other endlessly"))
 
     def charge_text(self, length: int) -> None:
-        """Charge a long text of the result.
+        """Count the characters of a long text in the result toward the limit.
 
         Raises:
             Fault: XAC605 if the total length is too large.

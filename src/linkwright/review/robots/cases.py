@@ -76,7 +76,7 @@ class _Failure:
 
 
 def find_cases(pair: FilePair) -> Iterator[Case]:
-    """Yield the description with each argument set with which a caller uses one of the versions.
+    """Yield the results of the description for each argument set that a caller uses in one of the versions.
 
     A set that fails in both versions is reported as a problem; a set that fails in one version, as a change.
     """

@@ -247,7 +247,7 @@ def copy_sequence(parent: Section, key: str) -> SavedSequence:
 
 
 def restore_sequence(parent: Section, key: str, saved_sequence: SavedSequence) -> None:
-    """Restore the node of a key, and the items of its sequence, from `copy_sequence`."""
+    """Restore the node and the items that `copy_sequence` returned for a key."""
     if saved_sequence.node is None:
         parent.restore(SavedEntry(key, None))
         return

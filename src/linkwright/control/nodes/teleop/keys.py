@@ -93,7 +93,7 @@ q/z : both speeds 10% faster/slower
 w/x : only the linear speed
 e/c : only the angular speed
 
-CTRL-C ends
+CTRL-C to quit
 """)
 
 
