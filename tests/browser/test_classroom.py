@@ -126,7 +126,7 @@ def test_catch_up_on_later_step_applies_solution_and_keeps_backup(start, open_pa
     (backup,) = (workspace / "replaced").rglob("robot.urdf")
     assert backup.read_text() == "mine"
     page.get_by_role("button", name="Steps").click()
-    page.locator(".outline-step[title*='taken over']").wait_for()
+    page.locator(".outline-step[title*='solution copied']").wait_for()
 
 
 def test_terminal_commands_are_checked(start, open_page, workspace):

@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic
 from linkwright.graph import Graph
-from linkwright.hosting.plans import HostedPlan
+from linkwright.hosting.plans import HostedPlan, NodeWithPanel
 from linkwright.hosting.rqt_arguments import RqtArguments, read_rqt_arguments
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 from linkwright.panels.panel_request import PanelRequest
@@ -17,7 +17,7 @@ _NUMBERS = count(1)
 _DEFAULT_VELOCITY_TOPIC = "/cmd_vel"
 
 
-class PanelNode(SingleNode):
+class PanelNode(SingleNode, NodeWithPanel):
     """The node of a program of rqt that opens a panel.
 
     The panel itself belongs to the viewer. The node has the name, parameters and remappings of the program.

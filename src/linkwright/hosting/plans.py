@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.hosting.history_size import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
-from linkwright.hosting.rqt_programs import PanelProgram, panel_program
 
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
     from linkwright.graph.parameters.parameter import ParameterRules
     from linkwright.hosting.reload import LiveReload
+    from linkwright.hosting.rqt_programs import PanelProgram
     from linkwright.hosting.xacro_calls import Descriptions
     from linkwright.nodes import NodeOptions
     from linkwright.packages import PackageFinder
+    from linkwright.panels.panel_request import PanelRequest
     from linkwright.rviz import RvizConfig
     from linkwright.viewer import Viewer
 
@@ -83,7 +84,7 @@ class HostedPlan:
     @property
     def panel_program(self) -> PanelProgram | None:
         """The program of rqt whose window is a panel of the page, or None for other nodes."""
-        return panel_program(self.package, self.executable)
+        return _panel_program(self.package, self.executable)
 
     @property
     def opens_gazebo_window(self) -> bool:
@@ -139,6 +140,16 @@ class HostedPlan:
         return {"name": self.process_name, "cmd": command, "cwd": None, "env": None, "pid": os.getpid()}
 
 
+class NodeWithPanel:
+    """A node whose window is a panel of the page.
+
+    Attributes:
+        request: the panel to open; None if the page opens as it is.
+    """
+
+    request: PanelRequest | None
+
+
 def is_viewer(package: str | None, executable: str) -> bool:
     """Return whether a node is RViz, which Linkwright's viewer replaces."""
     return (package, executable) == VIEWER
@@ -146,7 +157,16 @@ def is_viewer(package: str | None, executable: str) -> bool:
 
 def opens_page(package: str | None, executable: str) -> bool:
     """Return whether a node is RViz or a program of rqt, whose window Linkwright's page replaces."""
-    return is_viewer(package, executable) or panel_program(package, executable) is not None
+    return is_viewer(package, executable) or _panel_program(package, executable) is not None
+
+
+def _panel_program(package: str | None, executable: str) -> PanelProgram | None:
+    """Return the program of rqt whose window is a panel of the page, or None for other nodes."""
+    if package is None or not package.startswith("rqt"):
+        return None
+    from linkwright.hosting.rqt_programs import panel_program  # few launches start programs of rqt
+
+    return panel_program(package, executable)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.hosting.plans import HostedPlan, Supervisor
+from linkwright.hosting.plans import HostedPlan, NodeWithPanel, Supervisor
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
@@ -250,9 +250,7 @@ def _attach_panel(viewer: Viewer, node: RunningNode) -> None:
 
 
 def _open_panel(viewer: Viewer, node: RunningNode) -> None:
-    from linkwright.hosting.panel_node import PanelNode
-
-    if isinstance(node, PanelNode) and node.request is not None:
+    if isinstance(node, NodeWithPanel) and node.request is not None:
         from linkwright.panels.requested_panels import RequestedPanelsFeature  # few launches open panels
 
         viewer.add_feature(RequestedPanelsFeature).add(node.request)
