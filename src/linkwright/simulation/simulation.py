@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from math import inf, isfinite
 from typing import Any
 
@@ -87,7 +87,7 @@ class Simulation:
         self._solving = Solving(self.schedule, self._sleep)
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
-        self._pushes: dict[str, dict[str, Array]] = {}
+        self._pushes: dict[str, dict[Hashable, Array]] = {}
         self._new_servos: list[Servo] = []  # servos that are not in MuJoCo's model yet
         self._is_changed = False  # whether the scene differs from MuJoCo's model
         self._is_reshaped = False  # whether the scene's bodies or joints differ from the model
@@ -557,10 +557,10 @@ class Simulation:
     def push(
         self,
         link: str,
-        force: Vector3 | Sequence[float],
-        torque: Vector3 | Sequence[float] = (0.0, 0.0, 0.0),
+        force: Array | Sequence[float],
+        torque: Array | Sequence[float] = (0.0, 0.0, 0.0),
         *,
-        by: str = "",
+        by: Hashable = "",
         at: Array | Sequence[float] | None = None,
     ) -> None:
         """Set the force in N and the torque in N m on a link, in world axes.
@@ -573,6 +573,8 @@ class Simulation:
         if at is not None:
             x, y, z = (at - self.data.xipos[body]).tolist()
             forces[by][3:] += cross((x, y, z), (force[0], force[1], force[2]))
+        if not forces[by].any():
+            del forces[by]
         self.data.xfrc_applied[body] = sum(forces.values())
 
     def wake(self) -> None:

@@ -106,6 +106,19 @@ async def test_uniform_fluid_lifts_only_enabled_bodies():
         assert not log
 
 
+async def test_lift_follows_gravity_and_ends_with_plugin():
+    plugin = '<plugin name="b" filename="gz-sim-buoyancy-system"/>'
+    async with running_server(plugin, box("float", "0 0 5 0 0 0", mass=500.0)) as (server, _, __):
+        server.simulation.set_gravity((0.0, 0.0, -1.62))
+        server.advance(SECOND // 100)
+        start, _ = server.simulation.link_velocity("float::link")
+        server.advance(SECOND)
+        velocity, _ = server.simulation.link_velocity("float::link")
+        assert velocity[2] - start[2] == pytest.approx((1000 / 500 - 1) * 1.62, rel=0.01)
+        assert server.simulation.data.body("float::link").xfrc_applied[2] == pytest.approx(1000 * 1.62)
+    assert not server.simulation.data.body("float::link").xfrc_applied.any()
+
+
 async def test_body_that_is_spawned_later_floats_too():
     async with running_server(water()) as (server, _, __):
         server.advance(SECOND)

@@ -77,4 +77,4 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         if self.parameters.force_frame == "link":
             orientation = self.simulation.link_pose(self._link)[3:]
             force, torque = rotate(orientation, force), rotate(orientation, torque)
-        self.simulation.push(self._link, force, torque, by=self.node.name)
+        self.push(self._link, force, torque)

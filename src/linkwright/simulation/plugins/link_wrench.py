@@ -65,7 +65,6 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
         """
         parameters, node = self.parameters, self.node
         self._entities = Entities(self.simulation)
-        self._pushed: set[str] = set()
         self.reset()
         base = f"/world/{self.context.world.name}/wrench"
         node.subscribe(_WRENCH_TYPE, parameters.topic or base, self._on_wrench, stop_motion=_ignore)
@@ -79,11 +78,6 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
         element = self.context.element
         self._new: list[_Wrench] = []
         self._persistent = [] if element is None else [self._read(child) for child in element.elements("persistent")]
-
-    def stop(self) -> None:
-        """Remove the wrenches."""
-        self._persistent, self._new = [], []
-        self._apply_wrenches()
 
     def _read(self, element: Element) -> _Wrench:
         texts = {tag: self.text_in(element, tag) for tag in ("entity_name", "entity_type", "force", "torque")}
@@ -138,9 +132,7 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
 
     def _apply_wrenches(self) -> None:
         """Apply all wrenches for the next step."""
-        if not (self._persistent or self._new or self._pushed):
-            return
-        simulation, totals = self.simulation, dict[str, Array]()
+        totals: dict[str, Array] = {}
         for wrench in (*self._persistent, *self._new):
             try:
                 link = self._link_of(wrench)
@@ -148,13 +140,9 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
                 continue  # the entity may exist later
             totals[link] = totals.get(link, 0.0) + wrench.values
         self._new = []
-        for link in self._pushed - totals.keys():
-            if link in simulation.scene.bodies:
-                simulation.push(link, (0.0, 0.0, 0.0), by=self.context.name)
+        self.stop_pushing(except_links=totals)
         for link, values in totals.items():
-            force, torque = values[:3].tolist(), values[3:].tolist()
-            simulation.push(link, force, torque, by=self.context.name, at=simulation.link_pose(link)[:3])
-        self._pushed = set(totals)
+            self.push(link, values[:3], values[3:], at=self.simulation.link_pose(link)[:3])
 
 
 def _ignore() -> None:

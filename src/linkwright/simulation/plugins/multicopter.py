@@ -124,9 +124,8 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
             -self._sign * thrust * parameters.moment_constant * axis
             - parameters.rolling_moment_coefficient * cross_velocity
         )
-        push_name = self.context.name + parameters.joint_name
-        simulation.push(self._link, force.tolist(), by=push_name)
-        simulation.push(self._parent, (0.0, 0.0, 0.0), torque.tolist(), by=push_name)
+        self.push(self._link, force)
+        self.push(self._parent, (0.0, 0.0, 0.0), torque)
         self._motor.target = self._sign * self.speed / parameters.slowdown
 
 

@@ -28,7 +28,7 @@ sensor (`calls`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
@@ -36,6 +36,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
+from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
 from linkwright.messages import Time
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -151,6 +152,7 @@ class SimulatedPlugin(Generic[P]):
         self.gazebo_mistakes = environment.gazebo_mistakes
         self._environment = environment
         self._tasks: list[Task] = []
+        self._pushed_links: set[str] = set()
 
     # --- methods for plugins to override ------------------------------------------------------------------------------
 
@@ -216,6 +218,35 @@ class SimulatedPlugin(Generic[P]):
         """
         period = round(NANOSECONDS_PER_SECOND / rate) if rate > 0 else 0
         self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.call, function)))
+
+    def push(
+        self,
+        link: str,
+        force: Array | Sequence[float],
+        torque: Array | Sequence[float] = (0.0, 0.0, 0.0),
+        *,
+        at: Array | Sequence[float] | None = None,
+    ) -> None:
+        """Set the plugin's force in N and its torque in N m on a link, in world axes.
+
+        They act until the plugin sets them again, or ends. The forces of several plugins on a link add up, also if the
+        plugins have the same name.
+
+        Args:
+            link: the full name of the link.
+            force: the force, shape (3,).
+            torque: the torque, shape (3,).
+            at: the point of the world at which the force acts, in m, shape (3,); None for the center of mass.
+        """
+        self._pushed_links.add(link)
+        self.simulation.push(link, force, torque, by=self, at=at)
+
+    def stop_pushing(self, *, except_links: Collection[str] = ()) -> None:
+        """Remove the plugin's forces from all links, or from all except some."""
+        released_links = self._pushed_links.difference(except_links)
+        for link in released_links & self.simulation.scene.bodies.keys():
+            self.simulation.push(link, (0.0, 0.0, 0.0), by=self)
+        self._pushed_links -= released_links
 
     def stamp(self) -> Time:
         """Return the current simulated time as a stamp for message headers."""
@@ -293,14 +324,20 @@ class SimulatedPlugin(Generic[P]):
             ) from error
 
     def close(self, on_error: Callable[[Exception], object]) -> None:
-        """Call `stop`, and remove the plugin's node and functions.
+        """Call `stop`, and remove the plugin's forces, node and functions.
 
         An error in `stop` is passed to `on_error`.
         """
         for task in self._tasks:
             task.cancelled = True
-        self.node.calls.close(self.stop, on_error)
+        self.node.calls.close(self._end, on_error)
         self.node.close()
+
+    def _end(self) -> None:
+        try:
+            self.stop()
+        finally:
+            self.stop_pushing()
 
     def _full_name(self, name: str, known_names: Collection[str], code: str) -> str:
         """Return the full name in `known_names` for a name that may omit the model or nested models.

@@ -116,13 +116,7 @@ class GzTrajectoryFollower(SimulatedPlugin[TrajectoryFollowerParameters]):
             else:
                 torque = copysign(parameters.torque, bearing)
         axes = pose[3:]
-        simulation.push(
-            self._link,
-            rotate(axes, (force, 0.0, 0.0)),
-            rotate(axes, (0.0, 0.0, torque)),
-            by=self.context.name,
-            at=pose[:3],
-        )
+        self.push(self._link, rotate(axes, (force, 0.0, 0.0)), rotate(axes, (0.0, 0.0, torque)), at=pose[:3])
 
     def _choose_next_waypoint(self) -> None:
         """Choose the next waypoint; the last one remains, so that the model returns if it is moved."""

@@ -10,6 +10,7 @@ boundaries; here all collisions with a volume are cut.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import inf
@@ -20,7 +21,6 @@ import numpy as np
 from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.sdf.worlds import gravity_of
 from linkwright.simulation.plugins.fluids.displacement import Solid, Volume
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -54,16 +54,16 @@ class _Layer:
     density: float
 
 
-class _Buoyancy(SimulatedPlugin[P], Generic[P]):
+class _Buoyancy(SimulatedPlugin[P], ABC, Generic[P]):
     """A plugin that applies the force of buoyancy to links."""
 
+    @abstractmethod
     def _solids(self) -> dict[str, Solid]:
         """Return the solids of the links that float, by the names of the links."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _displaced(self, solid: Solid, rotation: Array, position: Array) -> Iterator[tuple[float, Volume]]:
         """Yield the density and the volume of each fluid that a link displaces, from the pose of the link."""
-        raise NotImplementedError
 
     def start(self) -> None:
         """Find the links that float."""
@@ -72,31 +72,20 @@ class _Buoyancy(SimulatedPlugin[P], Generic[P]):
         self.every(0.0, self._apply_buoyancy)
         self._apply_buoyancy()
 
-    def stop(self) -> None:
-        """Remove the forces."""
-        for link in self._floating:
-            if link in self.simulation.scene.bodies:
-                self.simulation.push(link, (0.0, 0.0, 0.0), by=self._pusher)
-
-    @property
-    def _pusher(self) -> str:
-        return f"{self.context.path}{SEPARATOR}{self.context.name}"
-
     def _apply_buoyancy(self) -> None:
         simulation = self.simulation
         simulation.refresh()
         if self._revision != simulation.revision:
             self._revision, self._floating = simulation.revision, self._solids()
-        gravity, data = np.array(gravity_of(simulation.world)), simulation.data
+        gravity, data = simulation.model.opt.gravity, simulation.data
         for link, solid in self._floating.items():
             body = simulation.body(link)
             displaced_mass, moment = 0.0, np.zeros(3)
             for density, volume in self._displaced(solid, data.xmat[body].reshape(3, 3), data.xpos[body]):
                 displaced_mass += density * volume.size
                 moment += density * volume.size * volume.center
-            lift = (-displaced_mass * gravity).tolist()
             center = moment / displaced_mass if displaced_mass else None
-            simulation.push(link, lift, at=center, by=self._pusher)
+            self.push(link, -displaced_mass * gravity, at=center)
 
 
 class GzBuoyancy(_Buoyancy[GzBuoyancyParameters]):

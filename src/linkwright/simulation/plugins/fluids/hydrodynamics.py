@@ -121,8 +121,7 @@ class GzHydrodynamics(SimulatedPlugin[HydrodynamicsParameters]):
         acceleration = np.linalg.solve(self._inertia + inert, other_forces - resistance)
         forces: Array = -resistance - inert @ acceleration
         self._previous = velocity, forces
-        force, torque = (rotation @ forces[:3]).tolist(), (rotation @ forces[3:]).tolist()
-        simulation.push(self._link, force, torque, at=simulation.data.xpos[body], by=self.context.name)
+        self.push(self._link, rotation @ forces[:3], rotation @ forces[3:], at=simulation.data.xpos[body])
 
     def _coriolis_forces(self, velocity: Array) -> Array:
         """Return the Coriolis and centripetal forces and torques that resist the motion of the added mass.

@@ -64,11 +64,6 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         self.every(0.0, self._apply_forces)
         self._apply_forces()
 
-    def stop(self) -> None:
-        """Remove the force."""
-        if self._link in self.simulation.scene.bodies:
-            self.simulation.push(self._link, (0.0, 0.0, 0.0), by=self.context.name)
-
     def _apply_forces(self) -> None:
         simulation = self.simulation
         body, data = simulation.body(self._link), simulation.data
@@ -76,7 +71,7 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         offset = rotation @ np.array(self.parameters.cp)
         linear, angular = simulation.link_velocity(self._link)
         force = self._force(rotation, linear + np.cross(angular, offset) - np.array(simulation.wind))
-        simulation.push(self._link, force.tolist(), at=data.xpos[body] + offset, by=self.context.name)
+        self.push(self._link, force, at=data.xpos[body] + offset)
 
     def _force(self, rotation: Array, velocity: Array) -> Array:
         """Return the force in N, in the axes of the world.

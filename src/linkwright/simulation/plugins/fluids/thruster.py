@@ -151,15 +151,10 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         """Return the speed in rad/s of a propeller with a thrust in N."""
         return copysign(sqrt(abs(thrust / factor)), thrust) if factor else 0.0
 
-    def _has_power(self) -> bool:
-        """Return whether no battery of the model is empty, after telling the thruster's battery of its load."""
-        parameters, has_power = self.parameters, True
-        for battery in self.model_plugins:
-            if isinstance(battery, GzBattery) and battery.context.path == self.context.path:
-                has_power = has_power and not battery.is_empty
-                if battery.parameters.battery_name == parameters.battery_name:
-                    battery.loads[self._joint] = parameters.power_load
-        return has_power
+    def _batteries(self) -> list[GzBattery]:
+        """Return the batteries of the model."""
+        path = self.context.path
+        return [item for item in self.model_plugins if isinstance(item, GzBattery) and item.context.path == path]
 
     def _apply_thrust(self) -> None:
         simulation = self.simulation
@@ -167,8 +162,11 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         axis = np.array(simulation.data.joint(self._joint).xaxis)
         velocity, _ = simulation.link_velocity(self._link)
         thrust, speed = self._thrust_and_speed(float(velocity @ axis))
-        torque = 0.0
-        if not self._has_power():
+        torque, batteries = 0.0, self._batteries()
+        for battery in batteries:
+            if battery.parameters.battery_name == self.parameters.battery_name:
+                battery.loads[self._joint] = self.parameters.power_load
+        if any(battery.is_empty for battery in batteries):
             thrust = 0.0
             if self._motor is not None:
                 self._motor.release()
@@ -178,9 +176,7 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
             error = speed - simulation.joint_state(self._joint)[1]
             if abs(error) > _MIN_SPEED_ERROR:
                 torque = self._pid.force(error, simulation.step / NANOSECONDS_PER_SECOND)
-        simulation.push(
-            self._link, (thrust * axis).tolist(), (torque * axis).tolist(), at=pose[:3], by=self.context.name
-        )
+        self.push(self._link, thrust * axis, torque * axis, at=pose[:3])
         if self._feedback.is_wanted:
             value = thrust if self.parameters.use_angvel_cmd else simulation.joint_state(self._joint)[1]
             self._feedback.publish(get_message(_FLOAT)(data=value))

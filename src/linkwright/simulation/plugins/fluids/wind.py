@@ -86,11 +86,8 @@ class WindEffects(SimulatedPlugin[NoParameters]):
         self._vertical = self._read(element, "vertical", "amplitude", 0.0)
 
     def stop(self) -> None:
-        """Restore the wind of the world, and remove the forces."""
+        """Restore the wind of the world."""
         self.simulation.wind = self.simulation.world.wind
-        for link in self._masses:
-            if link in self.simulation.scene.bodies:
-                self.simulation.push(link, (0.0, 0.0, 0.0), by=self.context.name)
 
     def _read(self, parent: Element | None, tag: str, amplitude_tag: str, mean: float) -> _Fluctuation:
         element = None if parent is None else parent.first(tag)
@@ -124,7 +121,7 @@ class WindEffects(SimulatedPlugin[NoParameters]):
         wind = np.array(simulation.wind)
         for link, mass in self._masses.items():
             linear, _ = simulation.link_velocity(link)
-            simulation.push(link, (mass * self._factor * (wind - linear)).tolist(), by=self.context.name)
+            self.push(link, mass * self._factor * (wind - linear))
 
     def _pushed_masses(self) -> dict[str, float]:
         """Return the masses in kg of the links on which the wind acts, by the names of the links."""

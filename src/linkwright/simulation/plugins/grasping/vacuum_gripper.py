@@ -52,7 +52,6 @@ class VacuumGripper(SimulatedPlugin[VacuumGripperParameters]):
         parameters, node = self.parameters, self.node
         self._link = self.link(parameters.link_name)
         self._is_old = bool(parameters.topic_name)
-        self._pushed: set[str] = set()
         self.reset()
         self._output = node.publisher(_BOOL, parameters.topic_name or "grasping", 1)
         if self._is_old:
@@ -65,10 +64,6 @@ class VacuumGripper(SimulatedPlugin[VacuumGripperParameters]):
     def reset(self) -> None:
         """Switch the gripper off."""
         self._is_on = False
-
-    def stop(self) -> None:
-        """Remove the forces."""
-        self._push({})
 
     def _on_switch(self, request: Any, response: Any) -> Any:
         response.success = bool(request.data) != self._is_on
@@ -84,7 +79,9 @@ class VacuumGripper(SimulatedPlugin[VacuumGripperParameters]):
 
     def _attract(self) -> None:
         forces = dict(self._forces()) if self._is_on else {}
-        self._push(forces)
+        self.stop_pushing(except_links=forces)
+        for link, force in forces.items():
+            self.push(link, force)
         if self._output.is_wanted:
             self._output.publish(get_message(_BOOL)(data=bool(forces)))
 
@@ -114,13 +111,3 @@ class VacuumGripper(SimulatedPlugin[VacuumGripperParameters]):
         if simulation.moves_freely(model):
             linear, angular = (tuple(vector.tolist()) for vector in simulation.link_velocity(self._link))
             simulation.set_model_velocity(model, linear, angular)
-
-    def _push(self, forces: dict[str, Array]) -> None:
-        """Set the forces on links, and remove those of the previous step."""
-        simulation, identity = self.simulation, f"{self.context.path}{SEPARATOR}{self.context.name}"
-        for link in self._pushed - forces.keys():
-            if link in simulation.scene.bodies:
-                simulation.push(link, (0.0, 0.0, 0.0), by=identity)
-        for link, force in forces.items():
-            simulation.push(link, force.tolist(), by=identity)
-        self._pushed = set(forces)
