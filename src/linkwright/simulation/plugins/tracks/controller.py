@@ -99,9 +99,9 @@ class GzTrackController(SimulatedPlugin[TrackControllerParameters]):
         )
 
     def stop(self) -> None:
-        """Stop the surfaces."""
-        for geom in self._normals:
-            self.simulation.model.geom_surfacevel[geom] = 0.0
+        """Stop the surfaces. Those of a rebuilt model do not move yet, and have other indices."""
+        if self._revision == self.simulation.revision:
+            self.simulation.model.geom_surfacevel[list(self._normals)] = 0.0
 
     def _on_command(self, message: Any) -> None:
         self._command, self._command_time = float(message.data), self.simulation.time
