@@ -38,6 +38,14 @@ def test_idl_files_outside_of_folders_of_ros_are_compared(repository, compare, o
     assert breaking(result) == ([expected] if is_breaking else [])
 
 
+def test_enum_in_idl_of_another_program_is_not_breaking(repository, compare):
+    repository.commit({"dds/State_t.idl": STATE})
+    repository.write({"dds/State_t.idl": STATE + "enum Mode { A, B };\n"})
+    result = subject(compare(repository), "dds/State_t.idl")
+    assert sentences(result) == []
+    assert "'enum' is not supported" in str(result.problems[0].text)
+
+
 def test_other_idl_files_that_cannot_be_parsed_are_not_compared(repository, compare):
     repository.commit({"dds/Mode.idl": "enum Mode { A, B };\n"})
     repository.write({"dds/Mode.idl": "enum Mode { A, B, C };\n"})

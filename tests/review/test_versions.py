@@ -250,3 +250,10 @@ def test_moved_findings_are_neither_new_nor_fixed(package, compare):
     result = compare(package)
     assert subject(result, PATH).changes
     assert (result.new_findings, result.fixed_findings) == ([], [])
+
+
+def test_missing_folder_is_named_instead_of_git(tmp_path):
+    with pytest.raises(LinkwrightError) as error:
+        open_versions(tmp_path / "nowhere", "HEAD~1..HEAD")
+    (diagnostic,) = error.value.diagnostics
+    assert (diagnostic.code, str(diagnostic.message).endswith("nowhere' is not a folder")) == ("CLI342", True)

@@ -88,7 +88,7 @@ class GitRepository:
         them, a file of such a name would not be found, nor a symbolic link of such a name checked.
 
         Raises:
-            LinkwrightError: CLI341 if git is not installed.
+            LinkwrightError: CLI341 if git is not installed, or CLI342 if the folder does not exist.
         """
         variables = {name: value for name, value in os.environ.items() if name not in _HOOK_VARIABLES}
         try:
@@ -101,7 +101,10 @@ class GitRepository:
                 errors="surrogateescape",
                 check=False,
             )
-        except FileNotFoundError:
+        except (FileNotFoundError, NotADirectoryError):
+            if not self.root.is_dir():
+                message = phrase("'{folder}' is not a folder", folder=display_path(self.root))
+                raise LinkwrightError(Diagnostic("CLI342", message)) from None
             hint = phrase("install git, or compare two files: `linkwright diff OLD NEW`")
             raise LinkwrightError(Diagnostic("CLI341", phrase("git is not installed"), hint=hint)) from None
 

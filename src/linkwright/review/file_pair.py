@@ -29,7 +29,7 @@ class UnreadableFileError(Exception):
 
 
 class LimitError(UnreadableFileError):
-    """Raised for a file that is not read because of its size or place, although it may be valid."""
+    """Raised for a file that is not read because of its size, place or kind, although it may be valid."""
 
 
 class Fault(NamedTuple):

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.messages.definitions.idl import parse_idl_structures
 from linkwright.messages.definitions.interfaces import Constant, Field, Structure, structures_of
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
@@ -14,7 +14,7 @@ from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Location
-from linkwright.review.file_pair import FilePair
+from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
@@ -76,7 +76,10 @@ def _read(file: Path) -> Mapping[str, Structure]:
     """Return the structures of a file by the text in front of the names of their fields."""
     kind = file.parent.name if file.suffix == _IDL else file.suffix.removeprefix(".")
     if kind not in SECTIONS:  # a file of another program than ROS, which can have any number of structures
-        return {f"{structure.type_name}.": structure for structure in parse_idl_structures(read_source(file))}
+        try:
+            return {f"{structure.type_name}.": structure for structure in parse_idl_structures(read_source(file))}
+        except LinkwrightError as error:
+            raise LimitError(error.diagnostics[0].message) from None  # ROS reads less of IDL than other programs
     package = enclosing_package(file.parent)
     name = package[0] if package else file.parent.name
     if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
