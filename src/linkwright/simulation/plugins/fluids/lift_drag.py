@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from math import acos, pi
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Vector3
@@ -113,7 +114,8 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         return sign * lift, abs(drag)
 
 
-def _unit(vector: Array) -> Array:
+def _unit(vector: ArrayLike) -> Array:
     """Return a vector's direction, or zero for a zero vector."""
-    length = float(np.linalg.norm(vector))
-    return vector / length if length > 0.0 else vector
+    components = np.asarray(vector, np.float64)
+    length = float(np.linalg.norm(components))
+    return components / length if length > 0.0 else components
