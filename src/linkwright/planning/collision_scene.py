@@ -1,0 +1,157 @@
+"""A robot among objects, in MuJoCo, which finds what collides.
+
+The model is compiled when the objects change. Links that never move do not collide with objects, because neither can
+be moved out of the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from linkwright.geometry.arrays import Array
+from linkwright.kinematics.tree import MOVING, resolve_mimics
+from linkwright.planning.robot_model import (
+    PlacedShape,
+    PositionExpansion,
+    Shapes,
+    add_robot,
+    add_shape,
+    body_name,
+    make_spec,
+    set_pose,
+)
+from linkwright.simulation.library import load_mujoco
+from linkwright.urdf import Robot
+
+
+@dataclass(frozen=True, slots=True)
+class SceneObject:
+    """An object in the world, or attached to a link.
+
+    Attributes:
+        shapes: the shapes of the object, in the frame of the object.
+        pose: the pose of the object in the frame of the root link, or of the link to which it is attached, shape (7,).
+        link: the link to which the object is attached; empty for an object in the world.
+        touch_links: the links that may touch an attached object.
+    """
+
+    name: str
+    shapes: tuple[PlacedShape, ...]
+    pose: Array
+    link: str = ""
+    touch_links: frozenset[str] = frozenset()
+
+
+@dataclass(slots=True)
+class AllowedCollisions:
+    """Which pairs of links and objects may collide.
+
+    Attributes:
+        pairs: whether a pair may collide, for each pair that is listed.
+        defaults: whether a link or object may collide with those without a listed pair.
+    """
+
+    pairs: dict[frozenset[str], bool] = field(default_factory=dict)
+    defaults: dict[str, bool] = field(default_factory=dict)
+
+    def allows(self, first: str, second: str) -> bool:
+        """Return whether two links or objects may collide."""
+        listed = self.pairs.get(frozenset((first, second)))
+        if listed is not None:
+            return listed
+        return self.defaults.get(first, False) or self.defaults.get(second, False)
+
+
+class Contact(NamedTuple):
+    """Two links or objects that collide, at a position in the frame of the root link.
+
+    Attributes:
+        depth: the penetration in m.
+        normal: the direction from the first to the second.
+    """
+
+    first: str
+    second: str
+    position: Array
+    normal: Array
+    depth: float
+
+
+class CollisionScene:
+    """A robot among objects.
+
+    Args:
+        robot: the robot.
+        shapes: the collision shapes of its links.
+        objects: the objects in the world and those that are attached to links.
+        allowed: the pairs that may collide.
+    """
+
+    def __init__(
+        self, robot: Robot, shapes: Shapes, objects: Iterable[SceneObject], allowed: AllowedCollisions
+    ) -> None:
+        self._mujoco = mujoco = load_mujoco()
+        moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING and any(joint.axis)]
+        joint_names, relations = resolve_mimics(robot, moving)
+        spec = make_spec()
+        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
+        add_robot(spec, robot, moving, shapes)
+        objects = tuple(objects)
+        for scene_object in objects:
+            _add_object(spec, scene_object)
+        names = [*(name for name in robot.links if shapes.get(name)), *(item.name for item in objects)]
+        bodies = {
+            **{name: body_name(name) for name in robot.links},
+            **{item.name: _object_body(item) for item in objects},
+        }
+        for first, second in _allowed_pairs(names, objects, allowed):
+            spec.add_exclude(bodyname1=bodies[first], bodyname2=bodies[second])
+        self._model = spec.compile()
+        self._data = mujoco.MjData(self._model)
+        self._expansion = PositionExpansion(joint_names, relations, self._model)
+        names_by_body = {self._model.body(body).id: name for name, body in bodies.items()}
+        self._names_by_geom = [names_by_body[int(body)] for body in self._model.geom_bodyid]
+
+    def is_free(self, positions: Array) -> bool:
+        """Return whether nothing collides at the positions of all joints."""
+        self._move(positions)
+        return not self._data.ncon
+
+    def contacts(self, positions: Array) -> list[Contact]:
+        """Return what collides at the positions of all joints."""
+        self._move(positions)
+        contacts = []
+        for contact in self._data.contact:
+            first, second = (self._names_by_geom[geom] for geom in contact.geom)
+            contacts.append(Contact(first, second, contact.pos.copy(), contact.frame[:3].copy(), -float(contact.dist)))
+        return contacts
+
+    def _move(self, positions: Array) -> None:
+        self._expansion.write(positions, self._data.qpos)
+        self._mujoco.mj_kinematics(self._model, self._data)
+        self._mujoco.mj_collision(self._model, self._data)
+
+
+def _object_body(scene_object: SceneObject) -> str:
+    return f"object {scene_object.name}"
+
+
+def _add_object(spec: Any, scene_object: SceneObject) -> None:
+    parent = spec.body(body_name(scene_object.link)) if scene_object.link else spec.worldbody
+    body = parent.add_body(name=_object_body(scene_object))
+    set_pose(body, scene_object.pose)
+    for placed_shape in scene_object.shapes:
+        add_shape(spec, body, placed_shape)
+
+
+def _allowed_pairs(
+    names: Sequence[str], objects: Sequence[SceneObject], allowed: AllowedCollisions
+) -> Iterable[tuple[str, str]]:
+    attached = {item.name: item.touch_links for item in objects if item.link}
+    for index, first in enumerate(names):
+        for second in names[:index]:
+            touches = second in attached.get(first, ()) or first in attached.get(second, ())
+            if touches or allowed.allows(first, second):
+                yield first, second

@@ -1,0 +1,190 @@
+"""Goals of a plan: positions of joints, or a region for the pose of a link."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+
+from linkwright.geometry.arrays import (
+    Array,
+    compose,
+    invert,
+    quaternion_from_rpy,
+    quaternion_inverse,
+    quaternion_multiply,
+    rotate,
+)
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.planning.groups import JointGroup
+from linkwright.planning.inverse_kinematics import ChainSolver
+from linkwright.planning.robot_model import PlacedShape, RobotModel
+
+_MAX_GOALS = 6
+"""The maximum number of configurations in which a planner may end."""
+_DISTINCT = 0.05
+"""The distance between two configurations, in rad or m over all joints, above which they count as different."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointTarget:
+    """The position of a joint in rad or m, with the tolerance in both directions."""
+
+    position: float
+    above: float = 0.0
+    below: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinkTarget:
+    """The region in which a point of a link must be, and the orientation of the link.
+
+    Poses are in the frame of the root link.
+
+    Attributes:
+        regions: the volumes for the point; empty if any position is acceptable.
+        offset: the point in the frame of the link in m, shape (3,).
+        orientation: the quaternion of the link, shape (4,), or None if any orientation is acceptable.
+        tolerances: the maximum rotations about x, y and z of the target orientation in rad, shape (3,).
+    """
+
+    link: str
+    regions: Sequence[PlacedShape] = ()
+    offset: Array = field(default_factory=lambda: np.zeros(3))
+    orientation: Array | None = None
+    tolerances: Array = field(default_factory=lambda: np.zeros(3))
+
+    def sample(self, random: np.random.Generator | None, current: Array) -> Array:
+        """Return a pose of the link that fulfills the target.
+
+        Args:
+            random: the source of random numbers; None for the middle of the region and the exact orientation.
+            current: the current pose of the link, shape (7,), for what the target leaves free.
+        """
+        quaternion = current[3:] if self.orientation is None else self.orientation
+        if random is not None:
+            spread = self.tolerances if self.orientation is not None else np.full(3, np.pi)
+            turn = quaternion_from_rpy(random.uniform(-np.minimum(spread, np.pi), np.minimum(spread, np.pi)))
+            quaternion = quaternion_multiply(quaternion, turn)
+        if not self.regions:
+            return np.concatenate((current[:3], quaternion))
+        region = self.regions[0 if random is None else int(random.integers(len(self.regions)))]
+        point = region.pose[:3] if random is None else _sample_point(region, random)
+        return np.concatenate((point - rotate(quaternion, self.offset), quaternion))
+
+    def is_met(self, pose: Array) -> bool:
+        """Return whether a pose of the link fulfills the target."""
+        if self.regions:
+            point = pose[:3] + rotate(pose[3:], self.offset)
+            if not any(_contains(region, point) for region in self.regions):
+                return False
+        if self.orientation is None:
+            return True
+        turn = quaternion_multiply(quaternion_inverse(self.orientation), pose[3:])
+        angles = np.abs(rpy_from_quaternion(tuple(turn.tolist())))
+        return bool(np.all(angles <= self.tolerances + 1e-3))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Goal:
+    """The conditions at the end of a path, or along it.
+
+    Attributes:
+        joints: the targets of joints, by name.
+        links: the targets of links.
+    """
+
+    joints: Mapping[str, JointTarget] = field(default_factory=dict)
+    links: Sequence[LinkTarget] = ()
+
+    def is_met(self, model: RobotModel, positions: Array) -> bool:
+        """Return whether the goal is fulfilled at the positions of all joints; the model is moved."""
+        for name, target in self.joints.items():
+            position = positions[model.index(name)]
+            if not target.position - target.below - 1e-3 <= position <= target.position + target.above + 1e-3:
+                return False
+        if self.links:
+            model.move(positions)
+        return all(target.is_met(model.link_pose(target.link)) for target in self.links)
+
+
+def goal_configurations(
+    goal: Goal,
+    model: RobotModel,
+    group: JointGroup,
+    start: Array,
+    is_valid: Callable[[Array], bool],
+    timeout_s: float,
+    seed: int = 0,
+) -> Iterator[Array]:
+    """Yield different positions of all joints that fulfill a goal and are valid, at most six.
+
+    Joints without a target stay where they are, unless a link target moves them.
+
+    Args:
+        goal: the goal, with targets of joints or of one link.
+        model: the robot; it is moved.
+        group: the joints to move.
+        start: the positions of all joints at the start.
+        is_valid: returns whether the positions of all joints are acceptable, such as free of collisions.
+        timeout_s: the time after which the search for configurations of a link target ends.
+        seed: the seed of the random numbers.
+    """
+    positions = start.copy()
+    for name, joint_target in goal.joints.items():
+        positions[model.index(name)] = joint_target.position
+    if not goal.links:
+        if is_valid(positions):
+            yield positions
+        return
+    target = goal.links[0]
+    solver = ChainSolver(model, group, target.link, seed)
+    random = np.random.default_rng(seed)
+    model.move(start)
+    current = model.link_pose(target.link)
+    deadline = perf_counter() + timeout_s
+    found: list[Array] = []
+    attempt: np.random.Generator | None = None
+    origin = positions
+    while len(found) < _MAX_GOALS and (remaining := deadline - perf_counter()) > 0.0:
+        pose = target.sample(attempt, current)
+        solution = solver.solve(pose, origin, min(remaining, 0.05), is_valid)
+        attempt = random
+        origin = start.copy()
+        origin[solver.indexes] = group.sample(random)
+        if solution is None or any(np.linalg.norm(solution - other) < _DISTINCT for other in found):
+            continue
+        solution[solver.indexes] = group.unwind(solution[solver.indexes], start[solver.indexes])
+        if goal.is_met(model, solution):
+            found.append(solution)
+            yield solution
+
+
+def _sample_point(region: PlacedShape, random: np.random.Generator) -> Array:
+    """Return a random point of a region in the frame of its pose."""
+    shape = region.shape
+    if isinstance(shape, Box):
+        point = random.uniform(-0.5, 0.5, 3) * shape.size
+    elif isinstance(shape, Sphere):
+        direction = random.normal(size=3)
+        point = direction / np.linalg.norm(direction) * shape.radius * random.uniform() ** (1.0 / 3.0)
+    else:
+        assert isinstance(shape, (Cylinder, Capsule)), "regions are simple shapes"
+        angle, radius = random.uniform(0.0, 2.0 * np.pi), shape.radius * np.sqrt(random.uniform())
+        height = random.uniform(-0.5, 0.5) * shape.length
+        point = np.array((radius * np.cos(angle), radius * np.sin(angle), height))
+    return compose(region.pose, np.array((*point, 0.0, 0.0, 0.0, 1.0)))[:3]
+
+
+def _contains(region: PlacedShape, point: Array, margin: float = 1e-4) -> bool:
+    x, y, z = compose(invert(region.pose), np.array((*point, 0.0, 0.0, 0.0, 1.0)))[:3]
+    shape = region.shape
+    if isinstance(shape, Box):
+        return all(abs(value) <= size / 2.0 + margin for value, size in zip((x, y, z), shape.size, strict=True))
+    if isinstance(shape, Sphere):
+        return bool(np.sqrt(x * x + y * y + z * z) <= shape.radius + margin)
+    assert isinstance(shape, (Cylinder, Capsule)), "regions are simple shapes"
+    return bool(np.hypot(x, y) <= shape.radius + margin and abs(z) <= shape.length / 2.0 + margin)

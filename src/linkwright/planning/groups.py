@@ -1,0 +1,220 @@
+"""Groups of joints that are planned for together: the groups of an SRDF with the limits of their joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, term
+from linkwright.geometry.arrays import Array
+from linkwright.planning.semantics import GroupDefinition, Semantics
+from linkwright.urdf import Joint, Robot, parent_joints
+
+DEFAULT_MAX_VELOCITY = DEFAULT_MAX_ACCELERATION = 1.0
+"""MoveIt's limits in rad/s and rad/s2, or m/s and m/s2, for joints without limits."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointLimits:
+    """The limits of a joint in rad or m, and their derivatives by time in s.
+
+    Attributes:
+        is_continuous: whether the joint turns without end; its bounds are then -pi and pi.
+        max_jerk: the maximum jerk, or infinity.
+    """
+
+    lower: float
+    upper: float
+    is_continuous: bool = False
+    max_velocity: float = DEFAULT_MAX_VELOCITY
+    max_acceleration: float = DEFAULT_MAX_ACCELERATION
+    max_jerk: float = inf
+
+
+def joint_limits(joint: Joint, overrides: Mapping[str, object] | None = None) -> JointLimits:
+    """Return the limits of a joint.
+
+    Args:
+        joint: a moving joint. The soft limits of its ``safety_controller`` apply as well.
+        overrides: the joint's entry in MoveIt's ``joint_limits.yaml``, which replaces the limits of the URDF.
+    """
+    limit, safety = joint.limit, joint.safety
+    is_continuous = joint.type == "continuous"
+    lower, upper = (-pi, pi) if is_continuous or limit is None else (limit.lower, limit.upper)
+    if safety is not None and not is_continuous and safety.soft_lower_limit < safety.soft_upper_limit:
+        lower, upper = max(lower, safety.soft_lower_limit), min(upper, safety.soft_upper_limit)
+    velocity = limit.velocity if limit is not None and limit.velocity > 0.0 else DEFAULT_MAX_VELOCITY
+    acceleration = limit.acceleration if limit is not None else None
+    jerk = limit.jerk if limit is not None else None
+    values = overrides or {}
+    if values.get("has_position_limits") and not is_continuous:
+        lower, upper = _number(values, "min_position", lower), _number(values, "max_position", upper)
+    if values.get("has_velocity_limits"):
+        velocity = _number(values, "max_velocity", velocity)
+    acceleration = acceleration or DEFAULT_MAX_ACCELERATION
+    if values.get("has_acceleration_limits"):
+        acceleration = _number(values, "max_acceleration", acceleration)
+    if values.get("has_jerk_limits"):
+        jerk = _number(values, "max_jerk", jerk or inf)
+    return JointLimits(lower, upper, is_continuous, velocity, acceleration, jerk or inf)
+
+
+def _number(values: Mapping[str, object], name: str, default: float) -> float:
+    value = values.get(name)
+    return float(value) if isinstance(value, (int, float)) else default
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointGroup:
+    """Joints that are planned for together; mimic joints of the group follow their leaders.
+
+    Attributes:
+        joint_names: the joints with a position of their own, parents before children.
+        lower: the lower bounds in rad or m, shape (joints,).
+        upper: the upper bounds in rad or m, shape (joints,).
+        is_continuous: which joints turn without end, shape (joints,).
+        is_rotating: which joints are revolute or continuous, shape (joints,).
+        max_velocities: in rad/s or m/s, shape (joints,).
+        max_accelerations: in rad/s2 or m/s2, shape (joints,).
+        links: the links that the joints of the group move directly, in the order of the joints.
+        tip: the last link of a chain, or None for a group that is not a chain.
+    """
+
+    name: str
+    joint_names: tuple[str, ...]
+    lower: Array
+    upper: Array
+    is_continuous: NDArray[np.bool_]
+    is_rotating: NDArray[np.bool_]
+    max_velocities: Array
+    max_accelerations: Array
+    links: tuple[str, ...]
+    tip: str | None
+
+    def sample(self, random: np.random.Generator) -> Array:
+        """Return random positions within the bounds, shape (joints,)."""
+        return random.uniform(self.lower, self.upper)
+
+    def unwind(self, positions: Array, reference: Array) -> Array:
+        """Return the same configuration with full turns removed, as near to the reference as the bounds allow.
+
+        Args:
+            positions: in rad or m, shape (joints,).
+            reference: the positions to stay near to, shape (joints,).
+        """
+        turns = np.round((reference - positions) / (2 * pi)) * 2 * pi
+        unwound = positions + turns
+        is_inside = (unwound >= self.lower) & (unwound <= self.upper)
+        turns[~self.is_rotating | ~(is_inside | self.is_continuous)] = 0.0
+        return positions + turns
+
+    def satisfies_bounds(self, positions: Array, tolerance: float = 1e-6) -> bool:
+        """Return whether positions are within the bounds; continuous joints always are."""
+        is_inside = (positions >= self.lower - tolerance) & (positions <= self.upper + tolerance)
+        return bool(np.all(is_inside | self.is_continuous))
+
+
+def resolve_groups(
+    robot: Robot,
+    semantics: Semantics,
+    joint_order: Iterable[str],
+    limits: Mapping[str, Mapping[str, object]] | None = None,
+) -> dict[str, JointGroup]:
+    """Return the groups of an SRDF by name, without groups that move no joint.
+
+    Args:
+        robot: the robot of the SRDF.
+        semantics: the contents of the SRDF.
+        joint_order: the joints with a position of their own, parents before children.
+        limits: the entries of ``joint_limits`` in MoveIt's ``joint_limits.yaml``, by joint name.
+
+    Raises:
+        LinkwrightError: ARM102, a group names a link, joint or group that does not exist.
+    """
+    order = {name: index for index, name in enumerate(joint_order)}
+    groups: dict[str, JointGroup] = {}
+    for definition in semantics.groups.values():
+        joints = _find_joints(robot, semantics, definition, ())
+        names = sorted((name for name in joints if name in order), key=order.__getitem__)
+        if not names:
+            continue
+        all_limits = [joint_limits(robot.joints[name], (limits or {}).get(name)) for name in names]
+        groups[definition.name] = JointGroup(
+            definition.name,
+            tuple(names),
+            np.array([limit.lower for limit in all_limits]),
+            np.array([limit.upper for limit in all_limits]),
+            np.array([limit.is_continuous for limit in all_limits]),
+            np.array([robot.joints[name].type != "prismatic" for name in names]),
+            np.array([limit.max_velocity for limit in all_limits]),
+            np.array([limit.max_acceleration for limit in all_limits]),
+            tuple(robot.joints[name].child for name in names),
+            _find_tip(robot, definition, joints),
+        )
+    return groups
+
+
+def _find_joints(
+    robot: Robot, semantics: Semantics, definition: GroupDefinition, enclosing: tuple[str, ...]
+) -> dict[str, None]:
+    """Return the names of a group's joints, including fixed joints, as the keys of a dictionary."""
+    parents = parent_joints(robot)
+    joints: dict[str, None] = {}
+    for name in definition.joints:
+        if name in robot.joints:
+            joints[name] = None
+        elif all(name != virtual.name for virtual in semantics.virtual_joints):
+            raise _unknown_name(definition, "joint", name, robot.joints)
+    for name in definition.links:
+        _check_link(robot, definition, name)
+        if name in parents:
+            joints[parents[name].name] = None
+    for base, tip in definition.chains:
+        _check_link(robot, definition, base)
+        _check_link(robot, definition, tip)
+        joints.update(dict.fromkeys(_chain_joints(parents, base, tip)))
+    for name in definition.subgroups:
+        subgroup = semantics.groups.get(name)
+        if subgroup is None or name in enclosing:
+            raise _unknown_name(definition, "group", name, semantics.groups)
+        joints.update(_find_joints(robot, semantics, subgroup, (*enclosing, definition.name)))
+    return joints
+
+
+def _chain_joints(parents: Mapping[str, Joint], base: str, tip: str) -> list[str]:
+    """Return the joints from the base link to the tip link."""
+    names: list[str] = []
+    link = tip
+    while link != base and link in parents:
+        names.append(parents[link].name)
+        link = parents[link].parent
+    return names[::-1]
+
+
+def _find_tip(robot: Robot, definition: GroupDefinition, joints: Mapping[str, None]) -> str | None:
+    """Return the last link of a group whose joints form one chain, or None."""
+    if len(definition.chains) == 1:
+        return definition.chains[0][1]
+    children = {robot.joints[name].child for name in joints}
+    parents = [robot.joints[name].parent for name in joints]
+    tips = children.difference(parents)
+    return tips.pop() if len(tips) == 1 and len(set(parents)) == len(parents) else None
+
+
+def _check_link(robot: Robot, definition: GroupDefinition, name: str) -> None:
+    if name not in robot.links:
+        raise _unknown_name(definition, "link", name, robot.links)
+
+
+def _unknown_name(definition: GroupDefinition, kind: str, name: str, candidates: Iterable[str]) -> LinkwrightError:
+    message = phrase(
+        "group '{group}' of the SRDF names the {kind} '{name}', which does not exist",
+        group=definition.name,
+        kind=term(kind),
+        name=name,
+    )
+    return LinkwrightError(Diagnostic("ARM102", message, hint=did_you_mean(name, list(candidates))))

@@ -1,0 +1,105 @@
+"""Inverse kinematics by damped least squares, with random restarts within the joint limits.
+
+The damping follows Sugihara, "Solvability-Unconcerned Inverse Kinematics by the Levenberg-Marquardt Method", IEEE
+Transactions on Robotics 27 (2011): it is the current error plus a small constant, so that the steps are small near
+singularities and large near the solution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.planning.groups import JointGroup
+from linkwright.planning.robot_model import RobotModel
+from linkwright.simulation.library import load_mujoco
+
+_MAX_ITERATIONS = 15
+"""The iterations of an attempt. A restart takes less time, on average, than more iterations."""
+_MIN_DAMPING = 1e-5
+_DAMPING_PER_SQUARED_ERROR = 0.005
+_POSITION_TOLERANCE_M = 1e-5
+_ROTATION_TOLERANCE_RAD = 1e-4
+_MAX_STEP = 0.7
+"""The maximum change of a joint in one iteration, in rad or m."""
+
+
+class ChainSolver:
+    """A solver for the joint positions of a group whose tip has a given pose.
+
+    Args:
+        model: the robot; the solver moves it.
+        group: the joints to move.
+        tip: the link that is moved to the target.
+        seed: the seed of the random restarts.
+    """
+
+    def __init__(self, model: RobotModel, group: JointGroup, tip: str, seed: int = 0) -> None:
+        self._model = model
+        self._mujoco = load_mujoco()
+        self._group = group
+        self._body = model.body(tip)
+        self.indexes = np.array([model.index(name) for name in group.joint_names])
+        self._dofs = np.array(model.dof_indexes(group.joint_names))
+        self._random = np.random.default_rng(seed)
+        self._jacobian = np.zeros((6, model.mujoco_model.nv))
+        self._error = np.zeros(6)
+        self._quaternion = np.zeros(4)
+        self._inverse = np.zeros(4)
+        self._identity = np.eye(len(self.indexes))
+
+    def solve(
+        self,
+        target: Array,
+        start: Array,
+        timeout_s: float,
+        is_valid: Callable[[Array], bool] | None = None,
+    ) -> Array | None:
+        """Return positions of all joints at which the tip has the target pose, or None if none were found.
+
+        Args:
+            target: the pose of the tip in the frame of the root link, shape (7,).
+            start: the positions of all joints, in the order of the model; the first attempt starts there.
+            timeout_s: the time after which no new attempt starts.
+            is_valid: returns whether a solution is acceptable, such as free of collisions.
+        """
+        deadline = perf_counter() + timeout_s
+        target_quaternion = np.array((target[6], *target[3:6]))
+        positions = start.copy()
+        while True:
+            if self._converge(positions, target[:3], target_quaternion):
+                positions[self.indexes] = self._group.unwind(positions[self.indexes], start[self.indexes])
+                if is_valid is None or is_valid(positions):
+                    return positions
+            if perf_counter() >= deadline:
+                return None
+            positions[self.indexes] = self._group.sample(self._random)
+
+    def solve_from(self, target: Array, start: Array) -> Array | None:
+        """Return the positions of all joints that are reached from the start without a restart, or None."""
+        positions = start.copy()
+        return positions if self._converge(positions, target[:3], np.array((target[6], *target[3:6]))) else None
+
+    def _converge(self, positions: Array, target: Array, quaternion: Array) -> bool:
+        group, indexes, jacobian = self._group, self.indexes, self._jacobian
+        lower, upper = group.lower, group.upper
+        model, data, mujoco, error = self._model.mujoco_model, self._model.data, self._mujoco, self._error
+        for _ in range(_MAX_ITERATIONS):
+            self._model.move(positions)
+            error[:3] = target - data.xpos[self._body]
+            mujoco.mju_negQuat(self._inverse, data.xquat[self._body])
+            mujoco.mju_mulQuat(self._quaternion, quaternion, self._inverse)
+            mujoco.mju_quat2Vel(error[3:], self._quaternion, 1.0)
+            if error[:3] @ error[:3] < _POSITION_TOLERANCE_M**2 and error[3:] @ error[3:] < _ROTATION_TOLERANCE_RAD**2:
+                return True
+            mujoco.mj_comPos(model, data)
+            mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], self._body)
+            columns = jacobian[:, self._dofs]
+            damping = _DAMPING_PER_SQUARED_ERROR * float(error @ error) + _MIN_DAMPING
+            step = np.linalg.solve(columns.T @ columns + damping * self._identity, columns.T @ error)
+            np.clip(step, -_MAX_STEP, _MAX_STEP, out=step)
+            positions[indexes] = np.clip(positions[indexes] + step, lower, upper)
+        return False

@@ -1,0 +1,239 @@
+"""Plans of motions: from a goal to a trajectory without collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import partial
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.planning.cartesian import follow_poses, line_poses
+from linkwright.planning.collision_scene import CollisionScene, Contact
+from linkwright.planning.goals import Goal, goal_configurations
+from linkwright.planning.groups import JointGroup
+from linkwright.planning.inverse_kinematics import ChainSolver
+from linkwright.planning.robot_model import RobotModel
+from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
+from linkwright.planning.timing import Trajectory, parameterize
+
+_GOAL_SHARE = 0.3
+"""The share of the planning time in which configurations for the goal are searched."""
+_MAX_BOUND_VIOLATION = 0.1
+"""The distance in rad or m by which the start may be outside of the bounds; it is then moved to the bound."""
+_LINE_STEP_M = 0.01
+_CHECK_STEP = 0.02
+"""The largest step between two checked configurations of a trajectory, in rad or m over all joints."""
+_DEVIATIONS = (0.1, 0.02, 0.0)
+"""The distances by which corners are rounded, in rad or m; the next one is tried if the trajectory collides."""
+
+
+class Method(Enum):
+    """How the path to the goal is found."""
+
+    SAMPLING = "sampling"
+    JOINT_LINE = "PTP"
+    CARTESIAN_LINE = "LIN"
+
+
+class Failure(Enum):
+    """Why there is no plan; the names are those of moveit_msgs/msg/MoveItErrorCodes."""
+
+    PLANNING_FAILED = "no path to the goal was found"
+    START_STATE_IN_COLLISION = "the start is in collision"
+    START_STATE_VIOLATES_PATH_CONSTRAINTS = "the start violates the path constraints"
+    GOAL_IN_COLLISION = "the goal is in collision"
+    NO_IK_SOLUTION = "the goal is out of reach"
+    INVALID_GOAL_CONSTRAINTS = "a joint of the goal is outside of its bounds"
+    INVALID_ROBOT_STATE = "a joint of the start is outside of its bounds"
+
+
+class PlanError(Exception):
+    """Raised when there is no plan.
+
+    Attributes:
+        failure: the kind of failure.
+        contacts: what collides at the start or at the goal.
+    """
+
+    def __init__(self, failure: Failure, contacts: Sequence[Contact] = ()) -> None:
+        super().__init__(failure.value)
+        self.failure = failure
+        self.contacts = contacts
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanRequest:
+    """The parameters of a plan.
+
+    Attributes:
+        group: the joints to move.
+        start: the positions of all joints in rad or m, in the order of the model.
+        goals: the goals; one of them must be reached.
+        path_constraint: what must hold along the path, or None.
+        method: how the path is found.
+        planner: the planner of OMPL for `Method.SAMPLING`.
+        planner_parameters: its parameters.
+        timeout_s: the maximum planning time in s.
+        velocity_scale: the share of the maximum velocities, from 0 to 1.
+        acceleration_scale: the share of the maximum accelerations, from 0 to 1.
+        interval_s: the time in s between two points of the trajectory.
+    """
+
+    group: JointGroup
+    start: Array
+    goals: Sequence[Goal]
+    path_constraint: Goal | None = None
+    method: Method = Method.SAMPLING
+    planner: str = DEFAULT_PLANNER
+    planner_parameters: Mapping[str, Any] = field(default_factory=dict)
+    timeout_s: float = 5.0
+    velocity_scale: float = 1.0
+    acceleration_scale: float = 1.0
+    interval_s: float = 0.1
+
+
+class MotionPlanner:
+    """A planner of motions of a robot among objects.
+
+    Args:
+        model: the robot; it is moved.
+        scene: the robot among objects.
+    """
+
+    def __init__(self, model: RobotModel, scene: CollisionScene) -> None:
+        self._model = model
+        self._scene = scene
+
+    def plan(self, request: PlanRequest) -> Trajectory:
+        """Return a trajectory of the group's joints.
+
+        Raises:
+            PlanError: there is no plan.
+        """
+        deadline = perf_counter() + request.timeout_s
+        indexes = np.array([self._model.index(name) for name in request.group.joint_names])
+        start = self._checked_start(request, indexes)
+        is_valid = partial(self._is_valid, request)
+        goals = self._find_goals(request, start, is_valid)
+        path = self._find_path(request, start, goals, indexes, is_valid, deadline)
+        if path is None:
+            raise PlanError(Failure.PLANNING_FAILED)
+        return self.time_path(request, start, path)
+
+    def time_path(self, request: PlanRequest, start: Array, path: Array) -> Trajectory:
+        """Return the fastest trajectory along a path that is free of collisions.
+
+        Args:
+            request: the request, with the scales of the limits.
+            start: the positions of all joints.
+            path: the positions of the group's joints, shape (n, joints).
+
+        Raises:
+            PlanError: even the trajectory that stops at each corner collides.
+        """
+        group = request.group
+        indexes = np.array([self._model.index(name) for name in group.joint_names])
+        for deviation in _DEVIATIONS:
+            trajectory = parameterize(
+                path,
+                group.max_velocities * request.velocity_scale,
+                group.max_accelerations * request.acceleration_scale,
+                max_deviation=deviation,
+                interval_s=request.interval_s,
+            )
+            positions = start.copy()
+            for configuration in subdivide(trajectory.positions, _CHECK_STEP):
+                positions[indexes] = configuration
+                if not self._is_valid(request, positions):
+                    break
+            else:
+                return trajectory
+        raise PlanError(Failure.PLANNING_FAILED)
+
+    def _checked_start(self, request: PlanRequest, indexes: Any) -> Array:
+        """Return the start, moved to the bounds of the group's joints."""
+        start, group = request.start.copy(), request.group
+        bounded = np.clip(start[indexes], group.lower, group.upper)
+        bounded[group.is_continuous] = start[indexes][group.is_continuous]
+        if np.any(np.abs(bounded - start[indexes]) > _MAX_BOUND_VIOLATION):
+            raise PlanError(Failure.INVALID_ROBOT_STATE)
+        start[indexes] = bounded
+        if contacts := self._scene.contacts(start):
+            raise PlanError(Failure.START_STATE_IN_COLLISION, contacts)
+        if request.path_constraint is not None and not request.path_constraint.is_met(self._model, start):
+            raise PlanError(Failure.START_STATE_VIOLATES_PATH_CONSTRAINTS)
+        return start
+
+    def _find_goals(self, request: PlanRequest, start: Array, is_valid: Any) -> list[Array]:
+        group, configurations = request.group, []
+        failure, contacts = Failure.NO_IK_SOLUTION, []
+        for goal in request.goals:
+            for name, target in goal.joints.items():
+                if name not in group.joint_names:
+                    continue
+                number = group.joint_names.index(name)
+                nearest = min(max(target.position, group.lower[number]), group.upper[number])
+                if not group.is_continuous[number] and abs(nearest - target.position) > 1e-3 + max(
+                    target.above, target.below
+                ):
+                    raise PlanError(Failure.INVALID_GOAL_CONSTRAINTS)
+            found = list(
+                goal_configurations(goal, self._model, group, start, is_valid, request.timeout_s * _GOAL_SHARE)
+            )
+            if not found and not goal.links:
+                positions = start.copy()
+                for name, target in goal.joints.items():
+                    positions[self._model.index(name)] = target.position
+                failure, contacts = Failure.GOAL_IN_COLLISION, self._scene.contacts(positions)
+            configurations += found
+        if not configurations:
+            raise PlanError(failure, contacts)
+        return configurations
+
+    def _find_path(
+        self, request: PlanRequest, start: Array, goals: Sequence[Array], indexes: Any, is_valid: Any, deadline: float
+    ) -> Array | None:
+        """Return the corners of a path of the group's joints, shape (n, joints), or None."""
+        if request.method is Method.CARTESIAN_LINE:
+            return self._find_line(request, start, indexes, is_valid)
+
+        def is_free(configuration: Array) -> bool:
+            positions[indexes] = configuration
+            return bool(is_valid(positions))
+
+        positions = start.copy()
+        problem = SamplingProblem(request.group, is_free, request.planner, request.planner_parameters)
+        ends = [goal[indexes] for goal in goals]
+        if request.method is Method.JOINT_LINE:
+            path = np.array((start[indexes], min(ends, key=lambda end: float(np.linalg.norm(end - start[indexes])))))
+            return path if problem.is_path_free(path, _CHECK_STEP) else None
+        return problem.solve(start[indexes], ends, max(deadline - perf_counter(), 0.1))
+
+    def _find_line(self, request: PlanRequest, start: Array, indexes: Any, is_valid: Any) -> Array | None:
+        """Return the path on which the tip of the group moves on a straight line to the goal."""
+        goal = request.goals[0]
+        tip = goal.links[0].link if goal.links else request.group.tip
+        if tip is None:
+            return None
+        self._model.move(start)
+        first = self._model.link_pose(tip)
+        if goal.links:
+            last = goal.links[0].sample(None, first)
+        else:
+            positions = start.copy()
+            for name, target in goal.joints.items():
+                positions[self._model.index(name)] = target.position
+            self._model.move(positions)
+            last = self._model.link_pose(tip)
+        solver = ChainSolver(self._model, request.group, tip)
+        path, fraction = follow_poses(solver, start, line_poses(first, last, _LINE_STEP_M), indexes, is_valid)
+        return path[:, indexes] if fraction == 1.0 else None
+
+    def _is_valid(self, request: PlanRequest, positions: Array) -> bool:
+        constraint = request.path_constraint
+        return self._scene.is_free(positions) and (constraint is None or constraint.is_met(self._model, positions))

@@ -1,0 +1,151 @@
+"""Planning in joint space with the sampling-based planners of OMPL.
+
+Source: OMPL, and MoveIt's interface to it (names and defaults of planners, resolution of the checks).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from math import pi
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.planning.groups import JointGroup
+from linkwright.planning.library import load_ompl
+
+DEFAULT_PLANNER = "RRTConnect"
+_PLANNERS = (
+    "BFMT", "BITstar", "BKPIECE1", "FMT", "InformedRRTstar", "KPIECE1", "LBKPIECE1", "PRM", "PRMstar", "RRT",
+    "RRTConnect", "RRTstar",
+)  # fmt: skip
+_MAX_STEP = 0.05
+"""The largest step between two checked configurations while planning, in rad or m over all joints."""
+_CHECKS_PER_STEP = 10
+"""How many times as many configurations of the final path are checked."""
+_SEARCH_SHARE = 0.5
+"""The share of the planning time for one search; planners that optimize the path use all of it."""
+_MAX_SIMPLIFICATION_S = 0.15
+
+
+def planner_class(name: str) -> str | None:
+    """Return the planner of OMPL for a type of MoveIt's ``ompl_planning.yaml``, or None if there is no such planner.
+
+    Args:
+        name: such as ``geometric::RRTConnect``, ``RRTConnectkConfigDefault`` or ``RRTConnect``.
+    """
+    short_name = name.rpartition("::")[2].removesuffix("kConfigDefault")
+    short_name = {"BKPIECE": "BKPIECE1", "KPIECE": "KPIECE1", "LBKPIECE": "LBKPIECE1"}.get(short_name, short_name)
+    return short_name if short_name in _PLANNERS else None
+
+
+class SamplingProblem:
+    """The search for a path of a group between configurations.
+
+    Args:
+        group: the joints to move.
+        is_free: returns whether the positions of the group's joints are free of collisions, shape (joints,).
+        planner: a planner of OMPL, see `planner_class`.
+        parameters: the parameters of the planner, by OMPL's names.
+        seed: the seed of the random numbers.
+    """
+
+    def __init__(
+        self,
+        group: JointGroup,
+        is_free: Callable[[Array], bool],
+        planner: str = DEFAULT_PLANNER,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
+        self._group = group
+        self._is_free = is_free
+        self._planner = planner
+        self._parameters = parameters or {}
+        self._ompl = load_ompl()
+
+    def solve(self, start: Array, goals: Sequence[Array], timeout_s: float) -> Array | None:
+        """Return a path from a configuration to one of several goals, or None if none was found in time.
+
+        Args:
+            start: positions of the joints in rad or m, shape (joints,).
+            goals: the positions to reach, each of shape (joints,).
+            timeout_s: the maximum time in s.
+
+        Returns:
+            The corners of the path, shape (n, joints). The straight lines between them are free of collisions.
+        """
+        deadline = perf_counter() + timeout_s
+        step = _MAX_STEP
+        while (remaining := deadline - perf_counter()) > 0.0:
+            path = self._search(start, goals, step, min(remaining, timeout_s * _SEARCH_SHARE))
+            if path is None:
+                return None
+            if self.is_path_free(path, step / _CHECKS_PER_STEP):
+                return path
+            step /= 2.0
+        return None
+
+    def is_path_free(self, path: Array, max_step: float) -> bool:
+        """Return whether a path is free of collisions, checked in steps of at most `max_step` in rad or m."""
+        return all(map(self._is_free, subdivide(path, max_step)))
+
+    def _search(self, start: Array, goals: Sequence[Array], step: float, timeout_s: float) -> Array | None:
+        base, geometric = self._ompl.base, self._ompl.geometric
+        count = len(start)
+        space = base.RealVectorStateSpace(count)
+        bounds = base.RealVectorBounds(count)
+        lower, upper = self._bounds(start)
+        for index in range(count):
+            bounds.setLow(index, float(lower[index]))
+            bounds.setHigh(index, float(upper[index]))
+        space.setBounds(bounds)
+        setup = geometric.SimpleSetup(space)
+        is_free, indexes = self._is_free, range(count)
+        setup.setStateValidityChecker(lambda state: is_free(np.array([state[index] for index in indexes])))
+        information = setup.getSpaceInformation()
+        information.setStateValidityCheckingResolution(step / space.getMaximumExtent())
+        setup.setStartState(_make_state(space, start))
+        goal = base.GoalStates(information)
+        for positions in goals:
+            goal.addState(_make_state(space, positions))
+        setup.setGoal(goal)
+        planner = getattr(geometric, self._planner)(information)
+        setup.setPlanner(planner)
+        setup.solve(timeout_s)
+        if not setup.haveExactSolutionPath():
+            return None
+        setup.simplifySolution(min(_MAX_SIMPLIFICATION_S, timeout_s))
+        path = setup.getSolutionPath()
+        return np.array([[state[index] for index in indexes] for state in path.getStates()])
+
+    def _bounds(self, start: Array) -> tuple[Array, Array]:
+        """Return the bounds of the search; continuous joints may make a turn in both directions."""
+        group = self._group
+        turning = group.is_continuous
+        lower = np.where(turning, start - 2 * pi, np.minimum(group.lower, start))
+        upper = np.where(turning, start + 2 * pi, np.maximum(group.upper, start))
+        return lower, upper
+
+
+def _make_state(space: Any, positions: Array) -> Any:
+    state = space.allocState()
+    for index, position in enumerate(positions):
+        state[index] = float(position)
+    return state
+
+
+def subdivide(path: Array, max_step: float) -> Array:
+    """Return a path with additional configurations on its lines.
+
+    Args:
+        path: shape (n, joints).
+        max_step: the maximum Euclidean distance between two configurations in rad or m.
+    """
+    pieces = [path[:1]]
+    for first, second in pairwise(path):
+        count = max(1, int(np.ceil(np.linalg.norm(second - first) / max_step)))
+        pieces.append(first + (second - first) * (np.arange(1, count + 1) / count)[:, None])
+    return np.concatenate(pieces)

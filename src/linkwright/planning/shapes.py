@@ -1,0 +1,68 @@
+"""The collision shapes of a robot's links, with each mesh replaced by its convex hull."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.arrays import Array, row_from_pose
+from linkwright.geometry.hull import convex_hull
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.inertia.mesh_library import MeshLibrary
+from linkwright.planning.robot_model import PlacedShape
+from linkwright.urdf import Collision, Mesh, Robot
+
+_MIN_CORNERS = 4
+_MIN_THICKNESS = 1e-6
+"""The maximum thickness of a mesh without volume, as a fraction of its length."""
+
+
+def robot_shapes(robot: Robot, meshes: MeshLibrary) -> tuple[dict[str, list[PlacedShape]], list[LinkwrightError]]:
+    """Return the collision shapes of each link, and the errors of meshes that cannot be read.
+
+    Shapes without volume are left out.
+    """
+    shapes: dict[str, list[PlacedShape]] = {}
+    errors: list[LinkwrightError] = []
+    for name, link in robot.links.items():
+        converted = [_convert_collision(collision, meshes, errors) for collision in link.collisions]
+        if placed_shapes := [placed_shape for placed_shape in converted if placed_shape is not None]:
+            shapes[name] = placed_shapes
+    return shapes, errors
+
+
+def _convert_collision(collision: Collision, meshes: MeshLibrary, errors: list[LinkwrightError]) -> PlacedShape | None:
+    """Return the shape of a collision, or None if it has no volume or its mesh has an error, which is added."""
+    shape, pose = collision.geometry, row_from_pose(collision.origin)
+    if isinstance(shape, Mesh):
+        try:
+            mesh = meshes.load(shape, collision.element)
+        except LinkwrightError as error:
+            errors.append(error)
+            return None
+        corners = hull_corners(mesh.vertices[np.unique(mesh.faces)])
+        return None if corners is None else PlacedShape(corners, pose)
+    sizes: tuple[float, ...]
+    if isinstance(shape, Box):
+        sizes = shape.size
+    elif isinstance(shape, Sphere):
+        sizes = (shape.radius,)
+    else:
+        assert isinstance(shape, (Cylinder, Capsule))
+        sizes = (shape.radius, shape.length)
+    return PlacedShape(shape, pose) if min(sizes) > 0.0 else None
+
+
+def hull_corners(points: Array) -> Array | None:
+    """Return the corners of the convex hull of points, or None if it has no volume.
+
+    Args:
+        points: in m, shape (points, 3).
+    """
+    if len(points) < _MIN_CORNERS:
+        return None
+    extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if not extents[-1] > _MIN_THICKNESS * extents[0]:
+        return None
+    faces = convex_hull(points)
+    return None if faces is None else points[np.unique(faces)]

@@ -1,0 +1,279 @@
+"""Time-optimal trajectories along paths, within limits of velocity and acceleration.
+
+The corners of a path are rounded with circular arcs, as in Kunz and Stilman, "Time-Optimal Trajectory Generation for
+Path Following with Bounded Acceleration and Velocity", RSS 2012, which MoveIt uses. The speed along the path is found
+by reachability, as in Pham and Pham, "A New Approach to Time-Optimal Path Parameterization Based on Reachability
+Analysis", IEEE Transactions on Robotics 34 (2018): a backward pass finds the largest speed at each point from which the
+rest of the path is possible, and a forward pass accelerates as much as that allows.
+
+The variables at a point of the path are the square x of the speed along the path, and the acceleration u along it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+
+_MIN_SLOPE = 1e-9
+"""The magnitude of a derivative by the path's length up to which it counts as zero."""
+_MIN_LENGTH = 1e-9
+"""The distance in rad or m up to which two corners of a path count as the same."""
+_MAX_TURN = 1e-6
+"""The change of the direction at a point of the path up to which the motion does not stop there."""
+_MARGIN = 0.995
+"""The share of the limits that is used, because they are exceeded by up to 0.3 % between two points."""
+_MIN_ANGLE = 1e-4
+"""The angle in rad between two lines up to which there is no corner."""
+_LINE_SPACING = 0.1
+"""The maximum distance in rad or m between two points of a line at which the speed is computed."""
+_ARC_SPACING = 0.05
+"""The maximum angle in rad between the directions at two points of an arc."""
+_MIN_POINTS = 8
+"""The minimum number of points of a line or arc."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trajectory:
+    """Positions of joints over time, starting and ending at rest.
+
+    Attributes:
+        times: in s, increasing from 0, shape (n,).
+        positions: in rad or m, shape (n, joints).
+        velocities: in rad/s or m/s, shape (n, joints).
+        accelerations: in rad/s2 or m/s2, shape (n, joints).
+    """
+
+    times: Array
+    positions: Array
+    velocities: Array
+    accelerations: Array
+
+    @property
+    def duration(self) -> float:
+        """The duration in s."""
+        return float(self.times[-1])
+
+
+def parameterize(
+    corners: Array,
+    max_velocities: Array,
+    max_accelerations: Array,
+    *,
+    max_deviation: float = 0.1,
+    interval_s: float = 0.1,
+) -> Trajectory:
+    """Return the fastest trajectory along a path that starts and ends at rest.
+
+    Args:
+        corners: the corners of the path, shape (n, joints).
+        max_velocities: in rad/s or m/s, shape (joints,).
+        max_accelerations: in rad/s2 or m/s2, shape (joints,).
+        max_deviation: the maximum distance of the trajectory from a corner, in rad or m over all joints; 0 to stop at
+            each corner.
+        interval_s: the time in s between two points of the trajectory.
+    """
+    is_distinct = np.concatenate(([True], np.linalg.norm(np.diff(corners, axis=0), axis=1) > _MIN_LENGTH))
+    corners = corners[is_distinct]
+    if len(corners) < 2:
+        zeros = np.zeros_like(corners[:1])
+        return Trajectory(np.zeros(1), corners[:1], zeros, zeros)
+    path = _round_corners(corners, max_deviation)
+    squared_speeds = _compute_speeds(path, max_velocities * _MARGIN, max_accelerations * _MARGIN)
+    return _sample(path, squared_speeds, interval_s)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Piece:
+    """A line or an arc of a path.
+
+    Attributes:
+        length: the length in rad or m over all joints.
+        origin: the first point of a line, or the center of an arc, shape (joints,).
+        direction: the direction at the start, shape (joints,).
+        radial: the direction from the center to the first point of an arc, shape (joints,); zeros for a line.
+        radius: the radius of an arc; infinite for a line.
+    """
+
+    length: float
+    origin: Array
+    direction: Array
+    radial: Array
+    radius: float = np.inf
+
+    @property
+    def points(self) -> Array:
+        """The distances from the start at which the speed is computed."""
+        steps = self.length / (_LINE_SPACING if np.isinf(self.radius) else _ARC_SPACING * self.radius)
+        return np.linspace(0.0, self.length, max(_MIN_POINTS, int(np.ceil(steps)) + 1))
+
+    def evaluate(self, distances: Array) -> tuple[Array, Array, Array]:
+        """Return the positions and their first two derivatives by the length, each of shape (n, joints)."""
+        if np.isinf(self.radius):
+            zeros = np.zeros((len(distances), len(self.origin)))
+            return self.origin + distances[:, None] * self.direction, zeros + self.direction, zeros
+        angles = (distances / self.radius)[:, None]
+        radial = np.cos(angles) * self.radial + np.sin(angles) * self.direction
+        slopes = np.cos(angles) * self.direction - np.sin(angles) * self.radial
+        return self.origin + self.radius * radial, slopes, -radial / self.radius
+
+
+class _Path:
+    """A path of lines and arcs, and points along it.
+
+    Attributes:
+        lengths: the length of the path up to each point, shape (n,).
+        slopes: the derivatives of the positions by the length, shape (n, joints).
+        curvatures: their second derivatives, shape (n, joints).
+    """
+
+    def __init__(self, pieces: Sequence[_Piece]) -> None:
+        self._pieces = pieces
+        self._starts = np.cumsum([0.0, *(piece.length for piece in pieces)])
+        self.lengths = np.concatenate(
+            [start + piece.points for start, piece in zip(self._starts, pieces, strict=False)]
+        )
+        evaluated = [piece.evaluate(piece.points) for piece in pieces]
+        self.slopes, self.curvatures = (np.concatenate([parts[index] for parts in evaluated]) for index in (1, 2))
+
+    def evaluate(self, lengths: Array) -> tuple[Array, Array, Array]:
+        """Return the positions and their first two derivatives by the length, each of shape (n, joints).
+
+        Args:
+            lengths: the lengths of the path up to the requested points, increasing, shape (n,).
+        """
+        numbers = np.clip(np.searchsorted(self._starts, lengths, side="right") - 1, 0, len(self._pieces) - 1)
+        parts = [
+            piece.evaluate(np.minimum(lengths[numbers == number] - self._starts[number], piece.length))
+            for number, piece in enumerate(self._pieces)
+        ]
+        positions, slopes, curvatures = (np.concatenate([part[index] for part in parts]) for index in range(3))
+        return positions, slopes, curvatures
+
+
+def _round_corners(corners: Array, max_deviation: float) -> _Path:
+    """Return a path with an arc at each corner."""
+    pieces: list[_Piece] = []
+    start = corners[0]
+    for index in range(1, len(corners)):
+        end, arc = corners[index], None
+        if index < len(corners) - 1:
+            arc = _make_arc(corners[index - 1], end, corners[index + 1], max_deviation)
+        if arc is not None:
+            end = arc.evaluate(np.zeros(1))[0][0]
+        length = float(np.linalg.norm(end - start))
+        if length > _MIN_LENGTH:
+            pieces.append(_Piece(length, start, (end - start) / length, np.zeros_like(start)))
+        start = end
+        if arc is not None:
+            pieces.append(arc)
+            start = arc.evaluate(np.array([arc.length]))[0][0]
+    return _Path(pieces)
+
+
+def _make_arc(previous: Array, corner: Array, following: Array, max_deviation: float) -> _Piece | None:
+    """Return the arc that rounds a corner, or None if the path is straight or turns back there."""
+    incoming, outgoing = corner - previous, following - corner
+    incoming_length, outgoing_length = float(np.linalg.norm(incoming)), float(np.linalg.norm(outgoing))
+    incoming, outgoing = incoming / incoming_length, outgoing / outgoing_length
+    angle = float(np.arccos(np.clip(incoming @ outgoing, -1.0, 1.0)))
+    if angle < _MIN_ANGLE or angle > np.pi - _MIN_ANGLE or max_deviation <= 0.0:
+        return None
+    half = angle / 2.0
+    reach = min(incoming_length / 2.0, outgoing_length / 2.0, max_deviation * np.sin(half) / (1.0 - np.cos(half)))
+    radius = float(reach / np.tan(half))
+    to_center = outgoing - incoming
+    center = corner + to_center / np.linalg.norm(to_center) * radius / np.cos(half)
+    radial = corner - reach * incoming - center
+    return _Piece(radius * angle, center, incoming, radial / np.linalg.norm(radial), radius)
+
+
+def _compute_speeds(path: _Path, max_velocities: Array, max_accelerations: Array) -> Array:
+    """Return the square of the speed along the path at each of its points, shape (n,)."""
+    steps = np.diff(path.lengths)
+    limits, offsets, ratios = _speed_limits(path, steps, max_velocities, max_accelerations)
+    is_corner = np.linalg.norm(np.diff(path.slopes, axis=0), axis=1) > _MAX_TURN
+    is_corner &= steps == 0.0
+    limits[:-1][is_corner] = limits[1:][is_corner] = 0.0
+    reachable = limits
+    reachable[-1] = 0.0
+    for index in range(len(steps) - 1, -1, -1):
+        step = 2.0 * steps[index]
+        if step <= 0.0:
+            reachable[index] = min(reachable[index], reachable[index + 1])
+            continue
+        with np.errstate(divide="ignore", invalid="ignore"):
+            bounds = (reachable[index + 1] / step + offsets[index]) / (1.0 / step - ratios[index])
+        bounds = np.where(1.0 / step - ratios[index] > 0.0, bounds, np.inf)
+        reachable[index] = min(reachable[index], float(bounds.min()))
+    speeds = np.zeros_like(reachable)
+    for index in range(len(steps)):
+        largest = float((offsets[index] - ratios[index] * speeds[index]).min())
+        speeds[index + 1] = max(0.0, min(reachable[index + 1], speeds[index] + 2.0 * steps[index] * largest))
+    return speeds
+
+
+def _speed_limits(
+    path: _Path, steps: Array, max_velocities: Array, max_accelerations: Array
+) -> tuple[Array, Array, Array]:
+    """Return the limits of x and u at each point of a path.
+
+    Returns:
+        The largest x for which there is a possible u, shape (n,), and the offsets and ratios of the lines that bound u,
+        each of shape (n, lines): -offset - ratio * x and offset - ratio * x.
+    """
+    slopes, curvatures = path.slopes, path.curvatures
+    limits = np.divide(
+        max_velocities, np.abs(slopes), out=np.full_like(slopes, np.inf), where=np.abs(slopes) > _MIN_SLOPE
+    )
+    limits = (limits**2).min(axis=1)
+    # u must also be possible at the next point, where x is larger by 2 * step * u.
+    end_slopes = slopes.copy()
+    end_slopes[:-1] = slopes[1:] + 2.0 * steps[:, None] * curvatures[1:]
+    end_curvatures = np.concatenate((curvatures[1:], curvatures[-1:]))
+    all_slopes = np.concatenate((slopes, end_slopes), axis=1)
+    all_curvatures = np.concatenate((curvatures, end_curvatures), axis=1)
+    bounds = np.broadcast_to(np.tile(max_accelerations, 2), all_slopes.shape)
+    is_moving = np.abs(all_slopes) > _MIN_SLOPE
+    offsets = np.divide(bounds, np.abs(all_slopes), out=np.full_like(all_slopes, np.inf), where=is_moving)
+    ratios = np.divide(all_curvatures, all_slopes, out=np.zeros_like(all_slopes), where=is_moving)
+    is_turning = np.abs(all_curvatures) > _MIN_SLOPE
+    pure = np.divide(
+        bounds, np.abs(all_curvatures), out=np.full_like(all_slopes, np.inf), where=is_turning & ~is_moving
+    )
+    differences = ratios[:, None, :] - ratios[:, :, None]
+    crossings = np.divide(
+        offsets[:, :, None] + offsets[:, None, :],
+        differences,
+        out=np.full_like(differences, np.inf),
+        where=differences > _MIN_SLOPE,
+    )
+    return np.minimum(limits, np.minimum(pure.min(axis=1), crossings.min(axis=(1, 2)))), offsets, ratios
+
+
+def _sample(path: _Path, squared_speeds: Array, interval_s: float) -> Trajectory:
+    """Return the trajectory at regular times."""
+    speeds = np.sqrt(squared_speeds)
+    steps = np.diff(path.lengths)
+    sums = speeds[:-1] + speeds[1:]
+    durations = np.divide(2.0 * steps, sums, out=np.zeros_like(steps), where=sums > 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        accelerations = np.where(steps > 0.0, (squared_speeds[1:] - squared_speeds[:-1]) / (2.0 * steps), 0.0)
+    ends = np.concatenate(([0.0], np.cumsum(durations)))
+    count = max(2, int(np.ceil(ends[-1] / interval_s)) + 1)
+    times = np.linspace(0.0, ends[-1], count)
+    indexes = np.clip(np.searchsorted(ends, times, side="right") - 1, 0, len(steps) - 1)
+    elapsed = times - ends[indexes]
+    distances = speeds[indexes] * elapsed + 0.5 * accelerations[indexes] * elapsed**2
+    sampled_speeds = np.maximum(0.0, speeds[indexes] + accelerations[indexes] * elapsed)
+    positions, slopes, curvatures = path.evaluate(path.lengths[indexes] + np.clip(distances, 0.0, steps[indexes]))
+    sampled_speeds[0] = sampled_speeds[-1] = 0.0
+    return Trajectory(
+        times,
+        positions,
+        slopes * sampled_speeds[:, None],
+        slopes * accelerations[indexes][:, None] + curvatures * (sampled_speeds**2)[:, None],
+    )

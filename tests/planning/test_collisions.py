@@ -1,0 +1,70 @@
+"""What collides in a planning scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.shapes import Box, Sphere
+from linkwright.planning.collision_scene import AllowedCollisions, CollisionScene, SceneObject
+from linkwright.planning.robot_model import PlacedShape
+from linkwright.planning.shapes import hull_corners
+from tests.planning.arms import arm
+
+pytestmark = pytest.mark.extra("arm")
+
+IDENTITY = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+
+
+def pose(x: float, y: float, z: float) -> np.ndarray:
+    return np.array((x, y, z, 0.0, 0.0, 0.0, 1.0))
+
+
+def scene(*objects: SceneObject, allowed: AllowedCollisions | None = None) -> CollisionScene:
+    return CollisionScene(arm().robot, arm().shapes, objects, allowed or arm().allowed())
+
+
+def ball(name: str, radius: float, *, at: np.ndarray, **more: object) -> SceneObject:
+    return SceneObject(name, (PlacedShape(Sphere(radius), IDENTITY),), at, **more)  # type: ignore[arg-type]
+
+
+class TestCollisionScene:
+    def test_straight_arm_is_free(self) -> None:
+        assert scene().is_free(arm().positions())
+        assert scene().contacts(arm().positions()) == []
+
+    def test_folded_arm_collides_with_itself(self) -> None:
+        contacts = scene().contacts(arm().positions(elbow=2.8, lift=0.3, bend=1.5))
+        assert {frozenset((contact.first, contact.second)) for contact in contacts}
+
+    @pytest.mark.parametrize(("distance", "is_free"), [(0.0401, True), (0.0399, False)])
+    def test_sphere_touches_cylinder_at_the_sum_of_the_radii(self, distance: float, is_free: bool) -> None:
+        # The upper arm has a radius of 0.04 m, and extends from z = 0.2 to z = 0.5.
+        near = scene(ball("ball", 0.1, at=pose(0.1 + distance, 0.0, 0.35)))
+        assert near.is_free(arm().positions()) is is_free
+        for contact in near.contacts(arm().positions()):
+            assert {contact.first, contact.second} == {"ball", "upper_arm"}
+            assert contact.depth == pytest.approx(0.0001, abs=2e-5)
+
+    def test_object_moves_with_the_link_that_holds_it(self) -> None:
+        held = ball("held", 0.05, at=pose(0.0, 0.0, 0.1), link="tool", touch_links=frozenset(("tool",)))
+        wall = SceneObject("wall", (PlacedShape(Box((0.1, 2.0, 2.0)), IDENTITY),), pose(0.92, 0.0, 0.5))
+        reaching = arm().positions(lift=1.2)
+        assert scene(wall).is_free(reaching)
+        contacts = scene(held, wall).contacts(reaching)
+        assert {frozenset((contact.first, contact.second)) for contact in contacts} == {frozenset(("held", "wall"))}
+
+    def test_allowed_pair_is_left_out(self) -> None:
+        obstacle = ball("ball", 0.1, at=pose(0.1, 0.0, 0.35))
+        allowed = arm().allowed()
+        allowed.defaults["ball"] = True
+        assert scene(obstacle, allowed=allowed).is_free(arm().positions())
+        allowed.pairs[frozenset(("ball", "upper_arm"))] = False
+        assert not scene(obstacle, allowed=allowed).is_free(arm().positions())
+
+    def test_mesh_is_replaced_by_its_hull(self) -> None:
+        corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=np.float64)
+        hull = hull_corners(np.concatenate((corners, [(0.5, 0.5, 0.5)])))
+        assert hull is not None
+        assert sorted(map(tuple, hull.tolist())) == sorted(map(tuple, corners.tolist()))
+        assert hull_corners(corners[:4]) is None

@@ -1,0 +1,109 @@
+"""Link frames by MuJoCo, and inverse kinematics."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.arrays import matrix_from_pose
+from linkwright.kinematics import KinematicTree
+from linkwright.planning.cartesian import follow_poses, line_poses
+from linkwright.planning.inverse_kinematics import ChainSolver
+from tests.planning.arms import arm
+
+pytestmark = pytest.mark.extra("arm")
+
+
+def random_positions(count: int, seed: int = 1) -> list[np.ndarray]:
+    """Return random positions of all joints of the arm."""
+    random = np.random.default_rng(seed)
+    samples = []
+    for _ in range(count):
+        positions = arm().positions(left=0.01)
+        positions[arm().indexes] = arm().group.sample(random)
+        samples.append(positions)
+    return samples
+
+
+class TestRobotModel:
+    def test_frames_equal_those_of_kinematic_tree(self) -> None:
+        tree = KinematicTree(arm().robot)
+        assert tree.joint_names == arm().model.joint_names
+        for positions in random_positions(20):
+            frames = tree.forward(positions)
+            arm().model.move(positions)
+            for link in tree.link_names:
+                np.testing.assert_allclose(
+                    matrix_from_pose(arm().model.link_pose(link)), frames[tree.link_index(link)], atol=1e-9
+                )
+
+    def test_mimic_joint_follows(self) -> None:
+        arm().model.move(arm().positions(left=0.02))
+        names, positions = arm().model.all_positions()
+        assert dict(zip(names, positions, strict=True))["right"] == 0.02
+
+
+class TestChainSolver:
+    def test_reachable_poses_are_reached(self) -> None:
+        solver = ChainSolver(arm().model, arm().group, "tool")
+        solved = 0
+        for positions, start in zip(random_positions(200), random_positions(200, seed=2), strict=True):
+            arm().model.move(positions)
+            target = arm().model.link_pose("tool")
+            solution = solver.solve(target, start, 1.0)
+            if solution is None:
+                continue
+            solved += 1
+            assert arm().group.satisfies_bounds(solution[arm().indexes])
+            arm().model.move(solution)
+            reached = arm().model.link_pose("tool")
+            np.testing.assert_allclose(reached[:3], target[:3], atol=2e-5)
+            assert abs(float(reached[3:] @ target[3:])) > 1.0 - 1e-8
+        assert solved >= 196
+
+    def test_start_at_the_target_is_kept(self) -> None:
+        start = arm().positions(lift=0.5, elbow=1.0, bend=0.4)
+        arm().model.move(start)
+        solver = ChainSolver(arm().model, arm().group, "tool")
+        np.testing.assert_allclose(solver.solve(arm().model.link_pose("tool"), start, 0.1), start, atol=1e-4)
+
+    def test_pose_out_of_reach_has_no_solution(self) -> None:
+        solver = ChainSolver(arm().model, arm().group, "tool")
+        target = np.array((3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+        assert solver.solve(target, arm().positions(), 0.05) is None
+
+    def test_refused_solution_leads_to_another_one(self) -> None:
+        start = arm().positions(lift=0.5, elbow=1.0, bend=0.4)
+        arm().model.move(start)
+        solver = ChainSolver(arm().model, arm().group, "tool")
+        elbow = arm().model.index("elbow")
+        solution = solver.solve(arm().model.link_pose("tool"), start, 2.0, lambda positions: positions[elbow] < 0.0)
+        assert solution is not None
+        assert solution[elbow] == pytest.approx(-1.0, abs=1e-3)
+
+
+class TestLines:
+    def test_tool_moves_on_a_straight_line(self) -> None:
+        start = arm().positions(lift=0.6, elbow=1.2, bend=1.0)
+        arm().model.move(start)
+        first = arm().model.link_pose("tool")
+        last = first + np.array((0.0, 0.15, 0.05, 0.0, 0.0, 0.0, 0.0))
+        poses = line_poses(first, last, 0.01)
+        assert len(poses) == 16
+        solver = ChainSolver(arm().model, arm().group, "tool")
+        path, fraction = follow_poses(solver, start, poses, arm().indexes)
+        assert fraction == 1.0
+        for positions in path:
+            arm().model.move(positions)
+            offset = arm().model.link_pose("tool")[:3] - first[:3]
+            direction = (last - first)[:3] / np.linalg.norm((last - first)[:3])
+            assert np.linalg.norm(offset - offset @ direction * direction) < 1e-4
+
+    def test_rest_of_a_line_that_leaves_the_reach_is_left_out(self) -> None:
+        start = arm().positions(lift=0.6, elbow=1.2, bend=1.0)
+        arm().model.move(start)
+        first = arm().model.link_pose("tool")
+        poses = line_poses(first, first + np.array((2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), 0.02)
+        path, fraction = follow_poses(ChainSolver(arm().model, arm().group, "tool"), start, poses, arm().indexes)
+        assert 0.0 < fraction < 0.5
+        assert len(path) == 1 + round(fraction * len(poses))

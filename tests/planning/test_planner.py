@@ -1,0 +1,177 @@
+"""Plans from goals to trajectories: collisions, failures, straight lines, constraints, planners."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.arrays import quaternion_from_rpy
+from linkwright.geometry.shapes import Box, Sphere
+from linkwright.planning.collision_scene import CollisionScene, SceneObject
+from linkwright.planning.goals import Goal, JointTarget, LinkTarget
+from linkwright.planning.planner import Failure, Method, MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.robot_model import PlacedShape
+from linkwright.planning.sampling import planner_class, subdivide
+from tests.planning.arms import arm
+
+pytestmark = pytest.mark.extra("arm")
+
+IDENTITY = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+WALL = SceneObject("wall", (PlacedShape(Box((0.6, 0.04, 0.8)), IDENTITY),), np.array((0.5, 0.0, 0.4, 0, 0, 0, 1.0)))
+LEFT, RIGHT = {"pan": 0.8, "lift": 0.8, "elbow": 0.9}, {"pan": -0.8, "lift": 0.8, "elbow": 0.9}
+
+
+def scene(*objects: SceneObject) -> CollisionScene:
+    return CollisionScene(arm().robot, arm().shapes, objects, arm().allowed())
+
+
+def joint_goal(**joints: float) -> Goal:
+    full = dict.fromkeys(arm().group.joint_names, 0.0) | joints
+    return Goal({name: JointTarget(position) for name, position in full.items()})
+
+
+def request(*goals: Goal, start: dict[str, float] | None = None, **more: object) -> PlanRequest:
+    return PlanRequest(arm().group, arm().positions(**(start or LEFT)), goals, **more)  # type: ignore[arg-type]
+
+
+def plan(plan_request: PlanRequest, *objects: SceneObject):
+    return MotionPlanner(arm().model, scene(*objects)).plan(plan_request)
+
+
+def is_free(trajectory, *objects: SceneObject) -> bool:
+    """Check a trajectory in steps of a tenth of those of the planner."""
+    checked, positions = scene(*objects), arm().positions()
+    for configuration in subdivide(trajectory.positions, 0.002):
+        positions[arm().indexes] = configuration
+        if not checked.is_free(positions):
+            return False
+    return True
+
+
+class TestSampling:
+    @pytest.mark.parametrize("planner", ["RRTConnect", "RRT", "BKPIECE1", "LBKPIECE1", "KPIECE1", "PRM", "BITstar"])
+    def test_path_leads_around_wall(self, planner: str) -> None:
+        trajectory = plan(request(joint_goal(**RIGHT), planner=planner, timeout_s=20.0), WALL)
+        np.testing.assert_allclose(trajectory.positions[0][:3], list(LEFT.values()), atol=1e-6)
+        np.testing.assert_allclose(trajectory.positions[-1][:3], list(RIGHT.values()), atol=1e-6)
+        assert is_free(trajectory, WALL)
+        assert np.all(np.abs(trajectory.velocities) <= arm().group.max_velocities)
+        assert np.all(np.abs(trajectory.accelerations) <= arm().group.max_accelerations)
+
+    def test_scales_slow_the_motion(self) -> None:
+        fast = plan(request(joint_goal(pan=0.0)))
+        slow = plan(request(joint_goal(pan=0.0), velocity_scale=0.1, acceleration_scale=0.1))
+        assert np.max(np.abs(slow.velocities)) <= 0.2
+        assert slow.duration > 2.0 * fast.duration
+
+    def test_pose_goal_is_reached(self) -> None:
+        orientation = quaternion_from_rpy((pi, 0.0, 0.0))
+        region = PlacedShape(Sphere(0.001), np.array((0.35, 0.2, 0.3, 0, 0, 0, 1.0)))
+        goal = Goal(links=(LinkTarget("tool", (region,), orientation=orientation, tolerances=np.full(3, 0.01)),))
+        trajectory = plan(request(goal))
+        positions = arm().positions()
+        positions[arm().indexes] = trajectory.positions[-1]
+        arm().model.move(positions)
+        pose = arm().model.link_pose("tool")
+        np.testing.assert_allclose(pose[:3], region.pose[:3], atol=0.001)
+        assert abs(float(pose[3:] @ orientation)) > 1.0 - 1e-4
+
+    def test_path_constraint_holds_along_the_path(self) -> None:
+        start = {"lift": 0.6, "elbow": 1.2, "bend": pi - 1.8}
+        level = Goal(
+            links=(
+                LinkTarget("tool", (), orientation=np.array((0.0, 1.0, 0.0, 0.0)), tolerances=np.array((0.6, 0.6, 7))),
+            )
+        )
+        goal = joint_goal(**start | {"pan": 1.0})
+        trajectory = plan(request(goal, start=start, path_constraint=level))
+        positions = arm().positions()
+        for configuration in trajectory.positions:
+            positions[arm().indexes] = configuration
+            assert level.is_met(arm().model, positions)
+
+
+class TestFailures:
+    def failure(self, plan_request: PlanRequest, *objects: SceneObject) -> PlanError:
+        with pytest.raises(PlanError) as error:
+            plan(plan_request, *objects)
+        return error.value
+
+    def test_start_in_collision_names_the_pair(self) -> None:
+        error = self.failure(request(joint_goal(**LEFT), start={"lift": 1.3, "elbow": 0.0}), WALL)
+        assert error.failure is Failure.START_STATE_IN_COLLISION
+        assert any("wall" in (contact.first, contact.second) for contact in error.contacts)
+
+    def test_goal_in_collision_names_the_pair(self) -> None:
+        error = self.failure(request(joint_goal(lift=1.3)), WALL)
+        assert error.failure is Failure.GOAL_IN_COLLISION
+        assert error.contacts
+
+    def test_goal_outside_of_bounds(self) -> None:
+        assert self.failure(request(joint_goal(pan=3.5))).failure is Failure.INVALID_GOAL_CONSTRAINTS
+
+    def test_start_outside_of_bounds(self) -> None:
+        error = self.failure(request(joint_goal(), start={"pan": 3.5}))
+        assert error.failure is Failure.INVALID_ROBOT_STATE
+
+    def test_start_slightly_outside_of_bounds_is_moved_inside(self) -> None:
+        trajectory = plan(request(joint_goal(pan=2.0), start={"pan": 2.85}))
+        assert trajectory.positions[0][0] == pytest.approx(2.8)
+
+    def test_pose_out_of_reach(self) -> None:
+        region = PlacedShape(Sphere(0.001), np.array((3.0, 0.0, 0.3, 0, 0, 0, 1.0)))
+        error = self.failure(request(Goal(links=(LinkTarget("tool", (region,)),)), timeout_s=1.0))
+        assert error.failure is Failure.NO_IK_SOLUTION
+
+    def test_goal_behind_closed_walls(self) -> None:
+        boxes = (((1.9, 0.02, 3.0), (1.05, 0, 0)), ((1.9, 0.02, 3.0), (-1.05, 0, 0)), ((4.0, 4.0, 0.02), (0, 0, 0.75)))
+        walls = [
+            SceneObject(f"wall{number}", (PlacedShape(Box(size), IDENTITY),), np.array((*center, 0, 0, 0, 1.0)))
+            for number, (size, center) in enumerate(boxes)
+        ]
+        start = {"pan": pi / 2, "lift": 1.2, "elbow": 0.6}
+        error = self.failure(request(joint_goal(**start | {"pan": -pi / 2}), start=start, timeout_s=1.0), *walls)
+        assert error.failure is Failure.PLANNING_FAILED
+
+
+class TestLines:
+    def test_joint_line_is_straight_in_joint_space(self) -> None:
+        trajectory = plan(request(joint_goal(**RIGHT), method=Method.JOINT_LINE))
+        np.testing.assert_allclose(trajectory.positions[:, 1], LEFT["lift"], atol=1e-6)
+
+    def test_joint_line_does_not_avoid_wall(self) -> None:
+        with pytest.raises(PlanError) as error:
+            plan(request(joint_goal(**RIGHT), method=Method.JOINT_LINE), WALL)
+        assert error.value.failure is Failure.PLANNING_FAILED
+
+    def test_tool_moves_on_a_straight_line(self) -> None:
+        start = {"lift": 0.6, "elbow": 1.2, "bend": 1.0}
+        arm().model.move(arm().positions(**start))
+        first = arm().model.link_pose("tool")
+        region = PlacedShape(Sphere(0.001), first + np.array((0.0, 0.1, 0.05, 0, 0, 0, 0)))
+        goal = Goal(links=(LinkTarget("tool", (region,), orientation=first[3:], tolerances=np.full(3, 0.01)),))
+        trajectory = plan(replace(request(goal, start=start), method=Method.CARTESIAN_LINE))
+        direction = np.array((0.0, 0.1, 0.05)) / np.linalg.norm((0.1, 0.05))
+        positions = arm().positions()
+        for configuration in trajectory.positions:
+            positions[arm().indexes] = configuration
+            arm().model.move(positions)
+            offset = arm().model.link_pose("tool")[:3] - first[:3]
+            assert np.linalg.norm(offset - offset @ direction * direction) < 2e-3
+        assert np.linalg.norm(offset) == pytest.approx(0.1118, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "planner"),
+    [
+        ("geometric::RRTConnect", "RRTConnect"),
+        ("RRTConnectkConfigDefault", "RRTConnect"),
+        ("geometric::BKPIECE", "BKPIECE1"),
+        ("geometric::LazyPRMstar", None),
+    ],
+)
+def test_planner_by_name(name: str, planner: str | None) -> None:
+    assert planner_class(name) == planner
