@@ -1,0 +1,205 @@
+"""Execution of trajectories by the controllers of MoveIt's simple controller manager."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.graph import ActionClient, Node
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
+from linkwright.graph.time.values import Duration
+from linkwright.messages import get_action, get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+
+_ACTIONS = {
+    "FollowJointTrajectory": "control_msgs/action/FollowJointTrajectory",
+    "GripperCommand": "control_msgs/action/GripperCommand",
+    "ParallelGripperCommand": "control_msgs/action/ParallelGripperCommand",
+}
+_SERVER_TIMEOUT_S = 5.0
+_POLL_S = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class ControllerSettings:
+    """A controller in ``moveit_controllers.yaml``.
+
+    Attributes:
+        action: the name of the action.
+        type: the type of the action without its package.
+        joints: the joints that the controller moves.
+        is_default: whether to prefer it to other controllers of the same joints.
+        max_effort: the effort of gripper commands.
+    """
+
+    name: str
+    action: str
+    type: str
+    joints: tuple[str, ...]
+    is_default: bool = False
+    max_effort: float = 0.0
+
+
+def read_controllers(parameters: Mapping[str, Any]) -> tuple[list[ControllerSettings], list[str]]:
+    """Return the controllers of the parameters ``moveit_simple_controller_manager.*``, and what is wrong with others.
+
+    Args:
+        parameters: the parameters of move_group by name.
+    """
+    prefix = "moveit_simple_controller_manager."
+    controllers, problems = [], []
+    for name in parameters.get(f"{prefix}controller_names") or ():
+        values = {
+            key: parameters.get(f"{prefix}{name}.{key}")
+            for key in ("action_ns", "type", "joints", "default", "max_effort")
+        }
+        if not values["joints"]:
+            problems.append(f"joints not specified for controller {name}")
+        elif values["type"] not in _ACTIONS:
+            problems.append(f"Unknown controller type: {values['type']}")
+        else:
+            action = f"{name}/{values['action_ns']}" if values["action_ns"] else name
+            controllers.append(
+                ControllerSettings(
+                    name,
+                    action,
+                    values["type"],
+                    tuple(values["joints"]),
+                    bool(values["default"]),
+                    float(values["max_effort"] or 0.0),
+                )
+            )
+    return controllers, problems
+
+
+class ExecutionError(Exception):
+    """Raised when a trajectory was not executed.
+
+    Attributes:
+        code: the name of the error code in moveit_msgs/msg/MoveItErrorCodes.
+    """
+
+    def __init__(self, code: str, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
+class TrajectoryExecution:
+    """The controllers, and the trajectories that they execute.
+
+    Args:
+        node: the node that sends the goals.
+        controllers: the controllers.
+    """
+
+    def __init__(self, node: Node, controllers: Sequence[ControllerSettings]) -> None:
+        self._node = node
+        self._controllers = controllers
+        group = ReentrantCallbackGroup()
+        self._clients = {
+            controller.name: ActionClient(node, _ACTIONS[controller.type], controller.action, callback_group=group)
+            for controller in controllers
+        }
+        self._handles: list[Any] = []
+        self._is_stopped = False
+
+    async def execute(self, trajectory: Any, is_canceled: Callable[[], bool]) -> None:
+        """Execute a moveit_msgs/msg/RobotTrajectory, and return when all controllers are done.
+
+        Args:
+            trajectory: the trajectory.
+            is_canceled: returns whether the execution must stop.
+
+        Raises:
+            ExecutionError: no controllers move these joints, or a controller failed or was stopped.
+        """
+        joint_trajectory = trajectory.joint_trajectory
+        if not joint_trajectory.points:
+            return
+        self._is_stopped = False
+        controllers = self._select(joint_trajectory.joint_names)
+        handles = [await self._send(controller, joint_trajectory) for controller in controllers]
+        self._handles = [handle for handle, _ in handles]
+        pending = [result for _, result in handles]
+        while not all(result.done() for result in pending):
+            if self._is_stopped or is_canceled():
+                self._cancel_all()
+                raise ExecutionError("PREEMPTED", "the execution was stopped")
+            await asyncio.sleep(_POLL_S)
+        for controller, result in zip(controllers, pending, strict=True):
+            response = result.result()
+            if response.status != GoalStatus.SUCCEEDED:
+                text = getattr(response.result, "error_string", "")
+                raise ExecutionError("CONTROL_FAILED", f"Controller '{controller.name}' failed: {text or 'aborted'}")
+
+    def stop(self) -> None:
+        """Stop the current execution."""
+        self._is_stopped = True
+
+    def _cancel_all(self) -> None:
+        for handle in self._handles:
+            handle.cancel_goal_async()
+
+    def _select(self, joints: Sequence[str]) -> list[ControllerSettings]:
+        """Return controllers that together move the joints, each joint by one of them."""
+        remaining = set(joints)
+        selected = []
+        for controller in sorted(self._controllers, key=lambda item: (not item.is_default, -len(item.joints))):
+            if remaining.intersection(controller.joints):
+                selected.append(controller)
+                remaining.difference_update(controller.joints)
+        if remaining:
+            raise ExecutionError(
+                "CONTROL_FAILED",
+                f"Unable to identify any set of controllers that can actuate the specified joints: "
+                f"[ {' '.join(sorted(remaining))} ]",
+            )
+        return selected
+
+    async def _send(self, controller: ControllerSettings, trajectory: Any) -> tuple[Any, Any]:
+        """Send a controller its part of a trajectory, and return the goal handle and the future of the result."""
+        client = self._clients[controller.name]
+        for _ in range(round(_SERVER_TIMEOUT_S / _POLL_S)):
+            if client.server_is_ready():
+                break
+            await asyncio.sleep(_POLL_S)
+        else:
+            raise ExecutionError("CONTROL_FAILED", f"Action client not connected to action server: {controller.action}")
+        handle = await client.send_goal_async(_make_goal(controller, trajectory))
+        if handle is None or not handle.accepted:
+            raise ExecutionError("CONTROL_FAILED", f"Goal request rejected by controller '{controller.name}'")
+        return handle, handle.get_result_async()
+
+
+def _make_goal(controller: ControllerSettings, trajectory: Any) -> Any:
+    goal = get_action(_ACTIONS[controller.type]).Goal()
+    names = [name for name in trajectory.joint_names if name in controller.joints]
+    indexes = [trajectory.joint_names.index(name) for name in names]
+    if controller.type == "GripperCommand":
+        goal.command.position = float(trajectory.points[-1].positions[indexes[0]])
+        goal.command.max_effort = controller.max_effort
+    elif controller.type == "ParallelGripperCommand":
+        goal.command.name = names
+        goal.command.position = [trajectory.points[-1].positions[index] for index in indexes]
+    else:
+        part = goal.trajectory
+        part.joint_names = names
+        point_class = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
+        for point in trajectory.points:
+            selected = point_class()
+            for field in ("positions", "velocities", "accelerations"):
+                values = getattr(point, field)
+                setattr(selected, field, [values[index] for index in indexes] if len(values) else [])
+            selected.time_from_start = point.time_from_start
+            part.points.append(selected)
+    return goal
+
+
+def duration_s(trajectory: Any) -> float:
+    """Return the duration of a trajectory_msgs/msg/JointTrajectory in s."""
+    if not trajectory.points:
+        return 0.0
+    return Duration.from_msg(trajectory.points[-1].time_from_start).nanoseconds / NANOSECONDS_PER_SECOND

@@ -1,0 +1,203 @@
+"""The services of move_group for kinematics: link poses, inverse kinematics, validity of states, Cartesian paths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array, compose, invert
+from linkwright.graph import Node
+from linkwright.graph.time.values import Duration
+from linkwright.messages import get_message, get_service
+from linkwright.planning.cartesian import follow_poses, line_poses
+from linkwright.planning.collision_scene import CollisionScene, Contact
+from linkwright.planning.inverse_kinematics import ChainSolver
+from linkwright.planning.nodes.conversions import (
+    RequestError,
+    UnknownFrameError,
+    goal_from_constraints,
+    pose_message,
+    pose_row,
+    trajectory_message,
+)
+from linkwright.planning.nodes.robot_context import RobotContext
+from linkwright.planning.nodes.scene_monitor import SceneMonitor
+from linkwright.planning.nodes.scene_state import SceneState
+from linkwright.planning.planner import MotionPlanner, PlanRequest
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+
+_BODY_TYPES = {"link": 0, "world": 1, "attached": 2}
+
+
+class KinematicsServices:
+    """The services compute_fk, compute_ik, check_state_validity and compute_cartesian_path.
+
+    Args:
+        node: the node that offers the services.
+        robot: the robot.
+        monitor: the planning scene.
+        ik_timeout: returns the time in s for the inverse kinematics of a group.
+    """
+
+    def __init__(
+        self, node: Node, robot: RobotContext, monitor: SceneMonitor, ik_timeout: Callable[[str], float]
+    ) -> None:
+        self._node, self._robot, self._monitor, self._ik_timeout = node, robot, monitor, ik_timeout
+        self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
+        for name, kind, callback in (
+            ("compute_fk", "GetPositionFK", self._compute_fk),
+            ("compute_ik", "GetPositionIK", self._compute_ik),
+            ("check_state_validity", "GetStateValidity", self._check_validity),
+            ("compute_cartesian_path", "GetCartesianPath", self._compute_cartesian_path),
+        ):
+            node.create_service(get_service(f"moveit_msgs/srv/{kind}"), name, callback)
+
+    def _compute_fk(self, request: Any, response: Any) -> Any:
+        positions = self._robot.positions_of(request.robot_state)
+        stamped_class = get_message("geometry_msgs/msg/PoseStamped")
+        links = list(request.fk_link_names) or [self._robot.frame]
+        if unknown := [link for link in links if link not in self._robot.robot.links]:
+            self._node.get_logger().error(f"There is no link '{unknown[0]}'")
+            response.error_code.val = self._error_codes.INVALID_LINK_NAME
+            return response
+        try:
+            to_frame = invert(self._robot.frame_pose(request.header.frame_id, positions))
+        except UnknownFrameError as error:
+            self._node.get_logger().error(f"There is no frame '{error}'")
+            response.error_code.val = self._error_codes.FRAME_TRANSFORM_FAILURE
+            return response
+        for link in links:
+            stamped = stamped_class()
+            stamped.header.frame_id = request.header.frame_id or self._robot.frame
+            stamped.header.stamp = self._node.get_clock().now().to_msg()
+            stamped.pose = pose_message(compose(to_frame, self._robot.frame_pose(link, positions)))
+            response.pose_stamped.append(stamped)
+            response.fk_link_names.append(link)
+        response.error_code.val = self._error_codes.SUCCESS
+        return response
+
+    def _compute_ik(self, request: Any, response: Any) -> Any:
+        ik_request = request.ik_request
+        try:
+            solution = self._solve_ik(ik_request)
+        except RequestError as error:
+            response.error_code.val = getattr(self._error_codes, error.code)
+            return response
+        response.solution = self._robot.state_message(solution)
+        response.error_code.val = self._error_codes.SUCCESS
+        return response
+
+    def _solve_ik(self, request: Any) -> Array:
+        group = self._robot.groups.get(request.group_name)
+        if group is None:
+            raise RequestError("INVALID_GROUP_NAME", f"there is no group '{request.group_name}'")
+        start = self._robot.positions_of(request.robot_state)
+        stamped = request.pose_stamped_vector[0] if request.pose_stamped_vector else request.pose_stamped
+        names = list(request.ik_link_names)
+        tip = (names[0] if names else request.ik_link_name) or group.tip
+        if tip is None or tip not in self._robot.robot.links:
+            raise RequestError("INVALID_LINK_NAME", f"there is no link '{tip}'")
+        try:
+            target = compose(self._robot.frame_pose(stamped.header.frame_id, start), pose_row(stamped.pose))
+        except UnknownFrameError as error:
+            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
+        timeout = Duration.from_msg(request.timeout).nanoseconds / NANOSECONDS_PER_SECOND
+        goal = goal_from_constraints(request.constraints, self._monitor.frame_lookup(start), tip)
+        scene = (
+            self._monitor.collisions(self._monitor.scene_with(request.robot_state, start))
+            if request.avoid_collisions
+            else None
+        )
+
+        def is_valid(positions: Array) -> bool:
+            return (scene is None or scene.is_free(positions)) and goal.is_met(self._robot.model, positions)
+
+        solver = ChainSolver(self._robot.model, group, tip)
+        solution = solver.solve(target, start, timeout or self._ik_timeout(group.name), is_valid)
+        if solution is None:
+            raise RequestError("NO_IK_SOLUTION", "no solution was found")
+        return solution
+
+    def _collision_scene(self, request: Any, state: Any, positions: Array) -> CollisionScene | None:
+        """Return the scene of a request that avoids collisions, or None."""
+        if not request.avoid_collisions:
+            return None
+        return self._monitor.collisions(self._monitor.scene_with(state, positions))
+
+    def _check_validity(self, request: Any, response: Any) -> Any:
+        positions = self._robot.positions_of(request.robot_state)
+        scene_state = self._monitor.scene_with(request.robot_state, positions)
+        contacts = self._monitor.collisions(scene_state).contacts(positions)
+        response.contacts = [self._contact_message(contact, scene_state) for contact in contacts]
+        goal = goal_from_constraints(request.constraints, self._monitor.frame_lookup(positions), None)
+        group = self._robot.groups.get(request.group_name)
+        is_bounded = group is None or group.satisfies_bounds(
+            positions[[self._robot.model.index(name) for name in group.joint_names]]
+        )
+        response.valid = not contacts and is_bounded and goal.is_met(self._robot.model, positions)
+        return response
+
+    def _contact_message(self, contact: Contact, scene: SceneState) -> Any:
+        message = get_message("moveit_msgs/msg/ContactInformation")()
+        message.header.frame_id = self._robot.frame
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        message.position.x, message.position.y, message.position.z = map(float, contact.position)
+        message.normal.x, message.normal.y, message.normal.z = map(float, contact.normal)
+        message.depth = contact.depth
+        message.contact_body_1, message.contact_body_2 = contact.first, contact.second
+        message.body_type_1, message.body_type_2 = (
+            _BODY_TYPES["world" if name in scene.objects else "attached" if name in scene.attached else "link"]
+            for name in (contact.first, contact.second)
+        )
+        return message
+
+    def _compute_cartesian_path(self, request: Any, response: Any) -> Any:
+        group = self._robot.groups.get(request.group_name)
+        tip = request.link_name or (group.tip if group is not None else None)
+        if group is None or tip is None or not request.max_step > 0.0:
+            name = "INVALID_GROUP_NAME" if group is None else "INVALID_LINK_NAME" if tip is None else "FAILURE"
+            response.error_code.val = getattr(self._error_codes, name)
+            return response
+        start = self._robot.positions_of(request.start_state)
+        model = self._robot.model
+        scene = (
+            self._monitor.collisions(self._monitor.scene_with(request.start_state, start))
+            if request.avoid_collisions
+            else None
+        )
+        try:
+            base = self._robot.frame_pose(request.header.frame_id, start)
+            constraint = goal_from_constraints(request.path_constraints, self._monitor.frame_lookup(start), tip)
+        except UnknownFrameError:
+            response.error_code.val = self._error_codes.FRAME_TRANSFORM_FAILURE
+            return response
+        pose = self._robot.frame_pose(tip, start)
+        pieces = []
+        for waypoint in request.waypoints:
+            target = compose(base, pose_row(waypoint))
+            pieces.append(line_poses(pose, target, request.max_step))
+            pose = target
+        indexes = np.array([model.index(name) for name in group.joint_names])
+        jump = request.revolute_jump_threshold or request.jump_threshold
+        solver = ChainSolver(model, group, tip)
+        path, response.fraction = follow_poses(
+            solver,
+            start,
+            np.concatenate(pieces) if pieces else np.empty((0, 7)),
+            indexes,
+            lambda positions: (scene is None or scene.is_free(positions)) and constraint.is_met(model, positions),
+            *((jump,) if jump > 0.0 else ()),
+        )
+        velocity = getattr(request, "max_velocity_scaling_factor", 0.0) or 1.0
+        acceleration = getattr(request, "max_acceleration_scaling_factor", 0.0) or 1.0
+        planner = MotionPlanner(model, scene or self._monitor.compile(None))
+        plan_request = PlanRequest(
+            group, start, (), velocity_scale=velocity, acceleration_scale=acceleration, interval_s=0.05
+        )
+        trajectory = planner.time_path(plan_request, start, path[:, indexes])
+        response.start_state = self._robot.state_message(start)
+        response.solution = trajectory_message(group.joint_names, trajectory, self._robot.frame)
+        response.error_code.val = self._error_codes.SUCCESS
+        return response

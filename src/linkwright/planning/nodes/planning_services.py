@@ -1,0 +1,164 @@
+"""The services of move_group that plan motions."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+from linkwright.geometry.arrays import Array
+from linkwright.graph import Node, Publisher
+from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
+from linkwright.messages import get_message, get_service
+from linkwright.planning.groups import JointGroup
+from linkwright.planning.nodes.conversions import (
+    InvalidShapeError,
+    RequestError,
+    UnknownFrameError,
+    goal_from_constraints,
+    trajectory_message,
+)
+from linkwright.planning.nodes.pipelines import Pipelines
+from linkwright.planning.nodes.robot_context import RobotContext
+from linkwright.planning.nodes.scene_monitor import SceneMonitor
+from linkwright.planning.nodes.scene_state import SceneState
+from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.robot_model import RobotModel
+from linkwright.planning.timing import Trajectory
+
+_DEFAULT_PLANNING_TIME_S = 5.0
+
+
+class PlanningServices:
+    """The services plan_kinematic_path and query_planner_interface, and the planning of actions.
+
+    One motion is planned at a time, in another thread.
+
+    Args:
+        node: the node that offers the services.
+        robot: the robot.
+        monitor: the planning scene.
+        pipelines: the planning pipelines.
+        default_scale: returns the share of the limits of "velocity" or "acceleration" for requests that set none.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        robot: RobotContext,
+        monitor: SceneMonitor,
+        pipelines: Pipelines,
+        default_scale: Callable[[str], float],
+    ) -> None:
+        self._node, self._robot, self._monitor, self._pipelines = node, robot, monitor, pipelines
+        self._default_scale = default_scale
+        self._planning = asyncio.Lock()
+        self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
+        self._path_publisher: Publisher[Any] = node.create_publisher(
+            "moveit_msgs/msg/DisplayTrajectory", "display_planned_path", 10
+        )
+        group = ReentrantCallbackGroup()
+        for name, kind, callback in (
+            ("plan_kinematic_path", "GetMotionPlan", self._plan_path),
+            ("query_planner_interface", "QueryPlannerInterfaces", self._query_planners),
+        ):
+            node.create_service(get_service(f"moveit_msgs/srv/{kind}"), name, callback, callback_group=group)
+
+    async def _plan_path(self, request: Any, response: Any) -> Any:
+        motion_request = request.motion_plan_request
+        result = response.motion_plan_response
+        result.group_name = motion_request.group_name
+        started = perf_counter()
+        try:
+            start, trajectory, names = await self.plan(motion_request, self._monitor.scene)
+        except RequestError as error:
+            self._node.get_logger().error(str(error))
+            result.error_code.val = getattr(self._error_codes, error.code)
+            return response
+        result.trajectory_start = self._robot.state_message(start)
+        result.trajectory = trajectory_message(names, trajectory, self._robot.frame)
+        result.planning_time = perf_counter() - started
+        result.error_code.val = self._error_codes.SUCCESS
+        return response
+
+    async def plan(self, request: Any, scene: SceneState) -> tuple[Array, Trajectory, tuple[str, ...]]:
+        """Plan a motion, and return the start, the trajectory and the names of its joints.
+
+        Raises:
+            RequestError: there is no plan.
+        """
+        group = self._robot.groups.get(request.group_name)
+        if group is None:
+            raise RequestError("INVALID_GROUP_NAME", f"there is no group '{request.group_name}'")
+        if not request.goal_constraints:
+            raise RequestError("INVALID_GOAL_CONSTRAINTS", "no goal constraints are specified")
+        start = self._robot.positions_of(request.start_state)
+        scene = self._monitor.scene_with(request.start_state, start, scene)
+        plan_request = self._make_request(request, group, start)
+        async with self._planning:
+            planner = MotionPlanner(RobotModel(self._robot.robot), self._monitor.compile(scene))
+            try:
+                trajectory = await asyncio.to_thread(planner.plan, plan_request)
+            except PlanError as error:
+                raise RequestError(error.failure.name, self._explain(error)) from None
+        self._publish_path(start, trajectory, group.joint_names)
+        return start, trajectory, group.joint_names
+
+    def _make_request(self, request: Any, group: JointGroup, start: Array) -> PlanRequest:
+        """Return the request of a moveit_msgs/msg/MotionPlanRequest.
+
+        Raises:
+            RequestError: a name, a frame or a shape is not valid.
+        """
+        lookup = self._monitor.frame_lookup(start)
+        choice = self._pipelines.choose(request.pipeline_id, request.planner_id, group.name)
+        if choice.replaced:
+            self._node.get_logger().warning(
+                f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place"
+            )
+        try:
+            goals = [goal_from_constraints(item, lookup, group.tip) for item in request.goal_constraints]
+            path_constraint = goal_from_constraints(request.path_constraints, lookup, group.tip)
+            for name in {name for goal in goals for name in goal.joints}:
+                self._robot.model.index(name)
+            for target in {target.link for goal in goals for target in goal.links}:
+                self._robot.model.body(target)
+        except UnknownFrameError as error:
+            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
+        except (InvalidShapeError, KeyError) as error:
+            raise RequestError("INVALID_GOAL_CONSTRAINTS", f"the goal cannot be used: {error}") from None
+        has_path_constraint = bool(path_constraint.joints or path_constraint.links)
+        return PlanRequest(
+            group,
+            start,
+            goals,
+            path_constraint if has_path_constraint else None,
+            choice.method,
+            choice.planner,
+            choice.parameters,
+            request.allowed_planning_time or _DEFAULT_PLANNING_TIME_S,
+            request.max_velocity_scaling_factor or self._default_scale("velocity"),
+            request.max_acceleration_scaling_factor or self._default_scale("acceleration"),
+        )
+
+    @staticmethod
+    def _explain(error: PlanError) -> str:
+        pairs = sorted({f"'{contact.first}' and '{contact.second}'" for contact in error.contacts})
+        return f"{error}: {', '.join(pairs)} collide" if pairs else str(error)
+
+    def _query_planners(self, _request: Any, response: Any) -> Any:
+        description_class = get_message("moveit_msgs/msg/PlannerInterfaceDescription")
+        for pipeline in self._pipelines.names:
+            description = description_class()
+            description.name, description.pipeline_id = self._pipelines.title(pipeline), pipeline
+            description.planner_ids = self._pipelines.planner_ids(pipeline)
+            response.planner_interfaces.append(description)
+        return response
+
+    def _publish_path(self, start: Array, trajectory: Trajectory, names: tuple[str, ...]) -> None:
+        message = get_message("moveit_msgs/msg/DisplayTrajectory")()
+        message.model_id = self._robot.robot.name
+        message.trajectory_start = self._robot.state_message(start)
+        message.trajectory = [trajectory_message(names, trajectory, self._robot.frame)]
+        self._path_publisher.publish(message)

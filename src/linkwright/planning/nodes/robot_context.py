@@ -1,0 +1,107 @@
+"""The robot of move_group: its description, groups and current state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwright.descriptions.service import load
+from linkwright.geometry.arrays import Array
+from linkwright.graph import Node
+from linkwright.graph.transforms.buffer import TransformBuffer
+from linkwright.graph.transforms.errors import TransformException
+from linkwright.graph.transforms.listener import TransformListener
+from linkwright.inertia.mesh_library import MeshLibrary
+from linkwright.messages import get_message
+from linkwright.packages import current_finder
+from linkwright.planning.collision_scene import AllowedCollisions
+from linkwright.planning.groups import resolve_groups
+from linkwright.planning.nodes.conversions import UnknownFrameError, joint_state_message, updated_positions
+from linkwright.planning.robot_model import RobotModel
+from linkwright.planning.semantics import read_semantics
+from linkwright.planning.shapes import robot_shapes
+
+
+class RobotContext:
+    """A robot with its groups, its shapes and its current state.
+
+    Args:
+        node: the node that receives the state of the robot.
+        urdf: the text of the robot description.
+        srdf: the text of the semantic description.
+        limits: the entries of ``joint_limits`` in MoveIt's ``joint_limits.yaml``, by joint name.
+
+    Attributes:
+        model: the robot, moved by whoever uses it on the event loop.
+        shapes: the collision shapes of its links.
+        groups: the groups of the SRDF by name.
+        frame: the planning frame.
+        positions: the current positions of all joints, shape (joints,).
+        has_state: whether a joint state was received.
+
+    Raises:
+        LinkwrightError: the URDF or the SRDF has errors.
+    """
+
+    def __init__(self, node: Node, urdf: str, srdf: str, limits: Mapping[str, Mapping[str, object]]) -> None:
+        self.robot = load(urdf)
+        self.semantics = read_semantics(srdf)
+        self.model = RobotModel(self.robot)
+        self.groups = resolve_groups(self.robot, self.semantics, self.model.joint_names, limits)
+        self.shapes, mesh_errors = robot_shapes(self.robot, MeshLibrary(current_finder(), Path.cwd()))
+        for error in mesh_errors:
+            node.get_logger().warning(error.diagnostics[0].message)
+        self.frame = self.robot.root
+        self.positions = np.zeros(len(self.model.joint_names))
+        self.has_state = False
+        self._extra_frames = {
+            joint.parent_frame for joint in self.semantics.virtual_joints if joint.child_link == self.robot.root
+        }
+        self._transforms = TransformBuffer()
+        TransformListener(self._transforms, node)
+        node.create_subscription("sensor_msgs/msg/JointState", "joint_states", self._on_joint_state, 10)
+
+    def allowed_collisions(self) -> AllowedCollisions:
+        """Return the pairs of links that may collide by the SRDF."""
+        pairs = {pair: True for pair in self.semantics.disabled_collisions if "" not in pair}
+        defaults = {name: True for pair in self.semantics.disabled_collisions if "" in pair for name in pair if name}
+        return AllowedCollisions(pairs, defaults)
+
+    def frame_pose(self, frame: str, positions: Array) -> Array:
+        """Return the pose of a frame in the frame of the root link, shape (7,).
+
+        Args:
+            frame: a link, a frame of tf, or empty for the planning frame.
+            positions: the positions of all joints.
+
+        Raises:
+            UnknownFrameError: there is no such frame.
+        """
+        name = frame.removeprefix("/")
+        if not name or name == self.frame or name in self._extra_frames:
+            return np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+        if name in self.robot.links:
+            self.model.move(positions)
+            return self.model.link_pose(name)
+        try:
+            return np.asarray(self._transforms.lookup(self.frame, name), dtype=np.float64)
+        except TransformException:
+            raise UnknownFrameError(name) from None
+
+    def positions_of(self, state: Any) -> Array:
+        """Return the positions of all joints in a moveit_msgs/msg/RobotState; missing joints stay where they are."""
+        return updated_positions(self.model.joint_names, self.positions, state.joint_state)[0]
+
+    def state_message(self, positions: Array) -> Any:
+        """Return a moveit_msgs/msg/RobotState without attached objects."""
+        message = get_message("moveit_msgs/msg/RobotState")()
+        self.model.move(positions)
+        message.joint_state = joint_state_message(*self.model.all_positions(), self.frame)
+        return message
+
+    def _on_joint_state(self, message: Any) -> None:
+        self.positions = updated_positions(self.model.joint_names, self.positions, message)[0]
+        self.has_state = True

@@ -1,0 +1,118 @@
+"""The planning scene of move_group on the graph: its topics and services, and what collides in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from linkwright.geometry.arrays import Array
+from linkwright.graph import Node, Publisher
+from linkwright.messages import get_service
+from linkwright.planning.collision_scene import CollisionScene
+from linkwright.planning.nodes.conversions import FrameLookup
+from linkwright.planning.nodes.robot_context import RobotContext
+from linkwright.planning.nodes.scene_state import SceneState
+
+_PERIOD_S = 0.5
+
+
+class SceneMonitor:
+    """The planning scene that topics and services change.
+
+    Args:
+        node: the node that subscribes and offers the services.
+        robot: the robot in the scene.
+        publishes_states: whether to publish the scene at regular times, and not only when objects change.
+
+    Attributes:
+        scene: the scene.
+    """
+
+    def __init__(self, node: Node, robot: RobotContext, *, publishes_states: bool) -> None:
+        self.scene = SceneState(robot.frame, robot.allowed_collisions(), node.get_logger().warning)
+        self._robot = robot
+        self._collision_scene: CollisionScene | None = None
+        self._publisher: Publisher[Any] = node.create_publisher(
+            "moveit_msgs/msg/PlanningScene", "monitored_planning_scene", 10
+        )
+        for topic, kind, callback in (
+            ("planning_scene", "PlanningScene", self._on_scene),
+            ("collision_object", "CollisionObject", self._on_object),
+            ("attached_collision_object", "AttachedCollisionObject", self._on_attached),
+            ("planning_scene_world", "PlanningSceneWorld", self._on_world),
+        ):
+            node.create_subscription(f"moveit_msgs/msg/{kind}", topic, callback, 10)
+        node.create_service(get_service("moveit_msgs/srv/GetPlanningScene"), "get_planning_scene", self._get_scene)
+        node.create_service(
+            get_service("moveit_msgs/srv/ApplyPlanningScene"), "apply_planning_scene", self._apply_scene
+        )
+        node.create_service(get_service("std_srvs/srv/Empty"), "clear_octomap", lambda _request, response: response)
+        if publishes_states:
+            node.create_timer(_PERIOD_S, self._publish)
+
+    def frame_lookup(self, positions: Array) -> FrameLookup:
+        """Return a function that finds frames: links at the given positions, objects, and frames of tf."""
+
+        def find(frame: str) -> Array:
+            pose = self.scene.object_pose(frame, partial(self._robot.frame_pose, positions=positions))
+            return self._robot.frame_pose(frame, positions) if pose is None else pose
+
+        return find
+
+    def scene_with(self, state: Any, positions: Array, scene: SceneState | None = None) -> SceneState:
+        """Return the scene with the objects that a moveit_msgs/msg/RobotState attaches."""
+        scene = scene or self.scene
+        if not state.attached_collision_objects:
+            return scene
+        changed = scene.copy()
+        for attached in state.attached_collision_objects:
+            changed.apply_attached(attached, self.frame_lookup(positions))
+        return changed
+
+    def collisions(self, scene: SceneState) -> CollisionScene:
+        """Return the compiled scene; that of the current scene is cached."""
+        if scene is not self.scene:
+            return self.compile(scene)
+        if self._collision_scene is None:
+            self._collision_scene = self.compile(scene)
+        return self._collision_scene
+
+    def compile(self, scene: SceneState | None) -> CollisionScene:
+        """Return the robot among the objects of a scene, or alone and without shapes for None."""
+        robot = self._robot
+        if scene is None:
+            return CollisionScene(robot.robot, {}, (), robot.allowed_collisions())
+        return CollisionScene(robot.robot, robot.shapes, scene.scene_objects(), scene.allowed)
+
+    def _get_scene(self, request: Any, response: Any) -> Any:
+        state = self._robot.state_message(self._robot.positions)
+        response.scene = self.scene.to_message(state, self._robot.robot.name, request.components.components)
+        return response
+
+    def _apply_scene(self, request: Any, response: Any) -> Any:
+        response.success = self._change_scene(partial(self.scene.apply, request.scene))
+        return response
+
+    def _on_scene(self, message: Any) -> None:
+        self._change_scene(partial(self.scene.apply, message))
+
+    def _on_object(self, message: Any) -> None:
+        self._change_scene(partial(self.scene.apply_object, message))
+
+    def _on_attached(self, message: Any) -> None:
+        self._change_scene(partial(self.scene.apply_attached, message))
+
+    def _on_world(self, message: Any) -> None:
+        for collision_object in message.collision_objects:
+            self._on_object(collision_object)
+
+    def _change_scene(self, change: Callable[[FrameLookup], bool]) -> bool:
+        is_changed = change(self.frame_lookup(self._robot.positions))
+        self._collision_scene = None
+        self._publish()
+        return is_changed
+
+    def _publish(self) -> None:
+        state = self._robot.state_message(self._robot.positions)
+        self._publisher.publish(self.scene.to_message(state, self._robot.robot.name, 0))

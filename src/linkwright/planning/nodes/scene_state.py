@@ -1,0 +1,271 @@
+"""The planning scene of move_group: objects in the world and on the robot, and the pairs that may collide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from copy import deepcopy
+from typing import Any
+
+from linkwright.geometry.arrays import Array, compose, invert
+from linkwright.messages import get_message
+from linkwright.planning.collision_scene import AllowedCollisions, SceneObject
+from linkwright.planning.nodes.conversions import (
+    FrameLookup,
+    InvalidShapeError,
+    UnknownFrameError,
+    pose_message,
+    pose_row,
+    shapes_of,
+)
+
+_ADD, _REMOVE, _APPEND, _MOVE = b"\x00", b"\x01", b"\x02", b"\x03"
+_SHAPE_FIELDS = ("primitives", "primitive_poses", "meshes", "mesh_poses", "planes", "plane_poses")
+_SCENE_SETTINGS, _ROBOT_STATE, _ATTACHED = 1, 2, 4
+_WORLD_NAMES, _WORLD_GEOMETRY, _OCTOMAP, _TRANSFORMS, _ALLOWED, _PADDING, _COLORS = 8, 16, 32, 64, 128, 256, 512
+
+
+class SceneState:
+    """A planning scene that messages change.
+
+    Args:
+        frame: the planning frame, which is the frame of the robot's root link.
+        allowed: the pairs of links that may collide by the SRDF.
+        warn: receives the reasons why a part of a message was ignored.
+
+    Attributes:
+        objects: the objects in the world by ID, with poses in the planning frame.
+        attached: the attached objects by ID, with poses in the frame of their link.
+        allowed: the pairs that may collide.
+    """
+
+    def __init__(self, frame: str, allowed: AllowedCollisions, warn: Callable[[str], object]) -> None:
+        self.frame = frame
+        self.name = "(noname)"
+        self.objects: dict[str, Any] = {}
+        self.attached: dict[str, Any] = {}
+        self.allowed = allowed
+        self._initial_allowed = deepcopy(allowed)
+        self._colors: dict[str, Any] = {}
+        self._warn = warn
+
+    def copy(self) -> SceneState:
+        """Return a copy that can be changed."""
+        other = SceneState(self.frame, deepcopy(self.allowed), self._warn)
+        other.name, other._initial_allowed = self.name, self._initial_allowed
+        other.objects, other.attached, other._colors = dict(self.objects), dict(self.attached), dict(self._colors)
+        return other
+
+    def apply(self, message: Any, lookup: FrameLookup) -> bool:
+        """Apply a moveit_msgs/msg/PlanningScene, and return whether all of it could be applied.
+
+        Args:
+            message: a full scene or a difference.
+            lookup: returns the poses of frames, among them the links of the robot in its current state.
+        """
+        if not message.is_diff:
+            self.objects.clear()
+            self.attached.clear()
+            self._colors.clear()
+            self.allowed = deepcopy(self._initial_allowed)
+        if message.name:
+            self.name = message.name
+        if message.allowed_collision_matrix.entry_names or message.allowed_collision_matrix.default_entry_names:
+            self._set_allowed(message.allowed_collision_matrix)
+        for color in message.object_colors:
+            self._colors[color.id] = color
+        is_applied = True
+        for collision_object in message.world.collision_objects:
+            is_applied &= self.apply_object(collision_object, lookup)
+        for attached in message.robot_state.attached_collision_objects:
+            is_applied &= self.apply_attached(attached, lookup)
+        return is_applied
+
+    def apply_object(self, message: Any, lookup: FrameLookup) -> bool:
+        """Apply a moveit_msgs/msg/CollisionObject, and return whether that was possible."""
+        name, operation = message.id, message.operation
+        if operation == _REMOVE:
+            if name and name not in self.objects:
+                self._warn(f"Tried to remove object '{name}', but it does not exist in this scene.")
+                return False
+            for removed in [name] if name else list(self.objects):
+                del self.objects[removed]
+            return True
+        existing = self.objects.get(name)
+        if operation == _MOVE and existing is None:
+            self._warn(f"World object '{name}' does not exist. Cannot move.")
+            return False
+        try:
+            placed = self._place(message, lookup)
+            if operation == _MOVE and existing is not None:
+                moved = deepcopy(existing)
+                moved.pose = placed.pose
+                for field in _SHAPE_FIELDS[1::2]:
+                    if getattr(message, field):
+                        setattr(moved, field, getattr(placed, field))
+                placed = moved
+            elif operation == _APPEND and existing is not None:
+                placed = _with_added_shapes(existing, placed)
+            if not shapes_of(placed):
+                self._warn(f"There are no shapes specified in the collision object message of '{name}'")
+                return False
+        except UnknownFrameError as error:
+            self._warn(f"Unknown frame: {error}")
+            return False
+        except InvalidShapeError as error:
+            self._warn(f"The shapes of object '{name}' cannot be used: {error}")
+            return False
+        placed.operation = _ADD
+        self.objects[name] = placed
+        return True
+
+    def apply_attached(self, message: Any, lookup: FrameLookup) -> bool:
+        """Apply a moveit_msgs/msg/AttachedCollisionObject, and return whether that was possible."""
+        name, link = message.object.id, message.link_name
+        if message.object.operation == _REMOVE:
+            names = [
+                key for key, item in self.attached.items() if key == name or (not name and link in ("", item.link_name))
+            ]
+            for removed in names:
+                self._detach(removed, lookup)
+            return bool(names) or not name
+        try:
+            link_pose = lookup(link)
+            attached = deepcopy(message)
+            if any(getattr(message.object, field) for field in ("primitives", "meshes", "planes")):
+                placed = self._place(message.object, lookup)
+            elif name in self.objects:
+                placed = deepcopy(self.objects[name])
+            else:
+                self._warn(f"Attempting to attach object '{name}' to link '{link}' but no geometry specified")
+                return False
+            if not shapes_of(placed):
+                return False
+        except UnknownFrameError as error:
+            self._warn(f"Unknown frame: {error}")
+            return False
+        except InvalidShapeError as error:
+            self._warn(f"The shapes of object '{name}' cannot be used: {error}")
+            return False
+        placed.header.frame_id = link
+        placed.pose = pose_message(compose(invert(link_pose), pose_row(placed.pose)))
+        placed.operation = _ADD
+        attached.object = placed
+        self.objects.pop(name, None)
+        self.attached[name] = attached
+        return True
+
+    def scene_objects(self) -> list[SceneObject]:
+        """Return the objects for the detection of collisions."""
+        world = [
+            SceneObject(name, tuple(shapes_of(message)), pose_row(message.pose))
+            for name, message in self.objects.items()
+        ]
+        attached = [
+            SceneObject(
+                name,
+                tuple(shapes_of(message.object)),
+                pose_row(message.object.pose),
+                message.link_name,
+                frozenset((message.link_name, *message.touch_links)),
+            )
+            for name, message in self.attached.items()
+        ]
+        return world + attached
+
+    def object_pose(self, name: str, link_poses: Callable[[str], Array]) -> Array | None:
+        """Return the pose of an object in the planning frame, shape (7,), or None if there is no such object."""
+        if name in self.objects:
+            return pose_row(self.objects[name].pose)
+        if name in self.attached:
+            attached = self.attached[name]
+            return compose(link_poses(attached.link_name), pose_row(attached.object.pose))
+        return None
+
+    def to_message(self, state: Any, robot_name: str, components: int) -> Any:
+        """Return a moveit_msgs/msg/PlanningScene.
+
+        Args:
+            state: the moveit_msgs/msg/RobotState of the robot without attached objects.
+            robot_name: the name of the robot.
+            components: the sum of the requested parts, by moveit_msgs/msg/PlanningSceneComponents; 0 for all.
+        """
+        wanted = components or (1 << 10) - 1
+        message = get_message("moveit_msgs/msg/PlanningScene")()
+        if wanted & _SCENE_SETTINGS:
+            message.name, message.robot_model_name = self.name, robot_name
+        if wanted & (_ROBOT_STATE | _ATTACHED):
+            message.robot_state = state
+        if wanted & _ATTACHED:
+            message.robot_state.attached_collision_objects = list(self.attached.values())
+        if wanted & _WORLD_GEOMETRY:
+            message.world.collision_objects = list(self.objects.values())
+        elif wanted & _WORLD_NAMES:
+            message.world.collision_objects = [_without_shapes(item) for item in self.objects.values()]
+        if wanted & _ALLOWED:
+            message.allowed_collision_matrix = self._allowed_message()
+        if wanted & _COLORS:
+            message.object_colors = list(self._colors.values())
+        return message
+
+    def _place(self, message: Any, lookup: FrameLookup) -> Any:
+        """Return a copy of a CollisionObject with its pose in the planning frame, and a pose for each shape."""
+        placed = deepcopy(message)
+        for shapes, poses in zip(_SHAPE_FIELDS[::2], _SHAPE_FIELDS[1::2], strict=True):
+            if not getattr(message, poses):
+                setattr(placed, poses, [get_message("geometry_msgs/msg/Pose")() for _ in getattr(message, shapes)])
+        frame = lookup(message.header.frame_id)
+        placed.pose = pose_message(compose(frame, pose_row(message.pose)))
+        placed.header.frame_id = self.frame
+        return placed
+
+    def _detach(self, name: str, lookup: FrameLookup) -> None:
+        attached = self.attached.pop(name)
+        released = deepcopy(attached.object)
+        released.pose = pose_message(compose(lookup(attached.link_name), pose_row(released.pose)))
+        released.header.frame_id = self.frame
+        self.objects[name] = released
+
+    def _set_allowed(self, matrix: Any) -> None:
+        """Apply a moveit_msgs/msg/AllowedCollisionMatrix, whose entries replace all pairs."""
+        names = matrix.entry_names
+        pairs = {
+            frozenset((name, other)): bool(is_allowed)
+            for name, entry in zip(names, matrix.entry_values, strict=False)
+            for other, is_allowed in zip(names, entry.enabled, strict=False)
+            if name != other
+        }
+        defaults = dict(zip(matrix.default_entry_names, map(bool, matrix.default_entry_values), strict=False))
+        self.allowed = AllowedCollisions(pairs or self.allowed.pairs, {**self.allowed.defaults, **defaults})
+
+    def _allowed_message(self) -> Any:
+        message = get_message("moveit_msgs/msg/AllowedCollisionMatrix")()
+        names = sorted({name for pair in self.allowed.pairs for name in pair})
+        message.entry_names = names
+        entry_class = get_message("moveit_msgs/msg/AllowedCollisionEntry")
+        pairs: Mapping[frozenset[str], bool] = self.allowed.pairs
+        for name in names:
+            entry = entry_class()
+            entry.enabled = [name != other and pairs.get(frozenset((name, other)), False) for other in names]
+            message.entry_values.append(entry)
+        message.default_entry_names = list(self.allowed.defaults)
+        message.default_entry_values = list(self.allowed.defaults.values())
+        return message
+
+
+def _with_added_shapes(existing: Any, addition: Any) -> Any:
+    """Return an object with the shapes of another one, which are moved into its frame."""
+    joined = deepcopy(existing)
+    offset = compose(invert(pose_row(existing.pose)), pose_row(addition.pose))
+    for field in _SHAPE_FIELDS:
+        items = getattr(addition, field)
+        if field.endswith("poses"):
+            items = [pose_message(compose(offset, pose_row(pose))) for pose in items]
+        setattr(joined, field, [*getattr(existing, field), *items])
+    return joined
+
+
+def _without_shapes(message: Any) -> Any:
+    result = deepcopy(message)
+    for field in _SHAPE_FIELDS:
+        setattr(result, field, [])
+    return result

@@ -1,0 +1,419 @@
+"""move_group on the graph: kinematics, plans, the planning scene, and execution by controllers."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import ActionClient, ActionServer
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.messages import get_action, get_message, get_service
+from linkwright.nodes import NodeOptions
+from linkwright.planning.nodes.move_group import MoveGroup
+from tests.planning.arms import LIMITS, SRDF, urdf
+from tests.waiting import SECONDS
+
+pytestmark = pytest.mark.extra("arm")
+
+PARAMETERS: dict[str, Any] = {
+    "robot_description": urdf(),
+    "robot_description_semantic": SRDF,
+    "robot_description_planning": {"joint_limits": LIMITS, "default_velocity_scaling_factor": 0.5},
+    "planning_pipelines": ["ompl", "pilz_industrial_motion_planner"],
+    "default_planning_pipeline": "ompl",
+    "ompl": {
+        "planner_configs": {
+            "RRTConnectkConfigDefault": {"type": "geometric::RRTConnect", "range": 0.0},
+            "Unknown": {"type": "geometric::LazyPRMstar"},
+        },
+        "arm": {"planner_configs": ["RRTConnectkConfigDefault"]},
+    },
+    "moveit_simple_controller_manager": {
+        "controller_names": ["arm_controller", "gripper_controller"],
+        "arm_controller": {
+            "type": "FollowJointTrajectory",
+            "action_ns": "follow_joint_trajectory",
+            "joints": ["pan", "lift", "elbow", "roll", "bend", "twist"],
+            "default": True,
+        },
+        "gripper_controller": {"type": "GripperCommand", "action_ns": "gripper_cmd", "joints": ["left"]},
+    },
+}
+START = {"lift": 0.6, "elbow": 1.2, "bend": 1.0}
+
+
+class Bench:
+    """move_group, its clients, and a controller that records its goals."""
+
+    def __init__(self, graph: Any, **parameters: Any) -> None:
+        self.graph = graph
+        self.node = graph.create_node("client")
+        self.received: list[Any] = []
+        self.fails = False
+        self.server = ActionServer(
+            self.node,
+            "control_msgs/action/FollowJointTrajectory",
+            "arm_controller/follow_joint_trajectory",
+            self._follow,
+        )
+        self.gripper = ActionServer(
+            self.node, "control_msgs/action/GripperCommand", "gripper_controller/gripper_cmd", self._grip
+        )
+        self.move_group = MoveGroup(graph, NodeOptions(parameters={**PARAMETERS, **parameters}))
+        self.state_publisher = self.node.create_publisher("sensor_msgs/msg/JointState", "joint_states", 10)
+
+    async def set_state(self, **joints: float) -> None:
+        message = get_message("sensor_msgs/msg/JointState")()
+        message.name, message.position = list(joints), list(joints.values())
+        self.state_publisher.publish(message)
+        await self.graph.settle()
+
+    async def wait(self, future: Any) -> Any:
+        for _ in range(round(SECONDS / 0.01)):
+            await self.graph.settle()
+            if future.done():
+                return future.result()
+            await asyncio.sleep(0.01)
+        raise AssertionError("there was no response in time")
+
+    async def call(self, kind: str, name: str, **fields: Any) -> Any:
+        service = get_service(f"moveit_msgs/srv/{kind}")
+        client = self.node.create_client(service, name)
+        return await self.wait(client.call_async(service.Request(**fields)))
+
+    async def send(self, kind: str, name: str, **fields: Any) -> tuple[int, Any]:
+        action = get_action(f"moveit_msgs/action/{kind}")
+        self.client = ActionClient(self.node, action, name)
+        handle = await self.wait(self.client.send_goal_async(action.Goal(**fields)))
+        response = await self.wait(handle.get_result_async())
+        return response.status, response.result
+
+    def _follow(self, goal: Any) -> Any:
+        self.received.append(goal.request.trajectory)
+        if self.fails:
+            goal.abort()
+        else:
+            goal.succeed()
+        return get_action("control_msgs/action/FollowJointTrajectory").Result()
+
+    def _grip(self, goal: Any) -> Any:
+        self.received.append(goal.request.command)
+        goal.succeed()
+        return get_action("control_msgs/action/GripperCommand").Result()
+
+
+@pytest.fixture
+async def bench(graph):
+    bench = Bench(graph)
+    await bench.set_state(**START)
+    yield bench
+    bench.move_group.close()
+
+
+def message(type_name: str, **fields: Any) -> Any:
+    return get_message(type_name)(**fields)
+
+
+def stamped(x: float, y: float, z: float, frame: str = "base") -> Any:
+    result = message("geometry_msgs/msg/PoseStamped")
+    result.header.frame_id = frame
+    result.pose.position.x, result.pose.position.y, result.pose.position.z = x, y, z
+    result.pose.orientation.y, result.pose.orientation.w = 1.0, 0.0
+    return result
+
+
+def box(name: str, x: float, y: float, z: float, *, size: tuple[float, float, float], frame: str = "base") -> Any:
+    result = message("moveit_msgs/msg/CollisionObject", id=name)
+    result.header.frame_id = frame
+    result.pose.position.x, result.pose.position.y, result.pose.position.z = x, y, z
+    result.primitives = [message("shape_msgs/msg/SolidPrimitive", type=1, dimensions=list(size))]
+    return result
+
+
+def joint_constraints(**joints: float) -> Any:
+    names = ("pan", "lift", "elbow", "roll", "bend", "twist")
+    constraints = [
+        message("moveit_msgs/msg/JointConstraint", joint_name=name, position=joints.get(name, 0.0)) for name in names
+    ]
+    return message("moveit_msgs/msg/Constraints", joint_constraints=constraints)
+
+
+def motion_request(*goals: Any, **fields: Any) -> Any:
+    return message("moveit_msgs/msg/MotionPlanRequest", group_name="arm", goal_constraints=list(goals), **fields)
+
+
+def state(**joints: float) -> Any:
+    result = message("moveit_msgs/msg/RobotState", is_diff=True)
+    result.joint_state.name, result.joint_state.position = list(joints), list(joints.values())
+    return result
+
+
+class TestKinematics:
+    async def test_fk_of_state_in_frame_of_link(self, bench) -> None:
+        response = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["shoulder", "tool"])
+        assert response.error_code.val == 1
+        assert response.pose_stamped[0].pose.position.z == pytest.approx(0.1)
+        header = message("std_msgs/msg/Header", frame_id="tool")
+        response = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"], header=header)
+        assert response.pose_stamped[0].pose.position.x == pytest.approx(0.0, abs=1e-9)
+
+    async def test_fk_of_unknown_link(self, bench) -> None:
+        response = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["nose"])
+        assert response.error_code.val == response.error_code.INVALID_LINK_NAME
+
+    async def test_ik_and_fk_agree(self, bench) -> None:
+        request = message("moveit_msgs/msg/PositionIKRequest", group_name="arm", avoid_collisions=True)
+        request.pose_stamped = stamped(0.35, 0.1, 0.3)
+        response = await bench.call("GetPositionIK", "compute_ik", ik_request=request)
+        assert response.error_code.val == 1
+        response = await bench.call(
+            "GetPositionFK", "compute_fk", fk_link_names=["tool"], robot_state=response.solution
+        )
+        position = response.pose_stamped[0].pose.position
+        np.testing.assert_allclose((position.x, position.y, position.z), (0.35, 0.1, 0.3), atol=1e-4)
+
+    @pytest.mark.parametrize(
+        ("group", "frame", "x", "code"),
+        [
+            ("leg", "base", 0.35, "INVALID_GROUP_NAME"),
+            ("arm", "moon", 0.35, "FRAME_TRANSFORM_FAILURE"),
+            ("arm", "world", 3.5, "NO_IK_SOLUTION"),
+        ],
+    )
+    async def test_ik_failures(self, bench, group: str, frame: str, x: float, code: str) -> None:
+        request = message("moveit_msgs/msg/PositionIKRequest", group_name=group)
+        request.pose_stamped = stamped(x, 0.1, 0.3, frame)
+        response = await bench.call("GetPositionIK", "compute_ik", ik_request=request)
+        assert response.error_code.val == getattr(response.error_code, code)
+
+
+class TestScene:
+    async def test_object_makes_state_invalid(self, bench) -> None:
+        assert (await bench.call("GetStateValidity", "check_state_validity", group_name="arm")).valid
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.world.collision_objects = [box("crate", 0.0, 0.0, 0.45, size=(0.3, 0.3, 0.3))]
+        assert (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        response = await bench.call("GetStateValidity", "check_state_validity", group_name="arm")
+        assert not response.valid
+        pair = response.contacts[0]
+        assert {(pair.contact_body_1, pair.body_type_1), (pair.contact_body_2, pair.body_type_2)} >= {("crate", 1)}
+
+    async def test_object_is_attached_and_detached(self, bench) -> None:
+        publisher = bench.node.create_publisher("moveit_msgs/msg/CollisionObject", "collision_object", 10)
+        publisher.publish(box("cup", 0.0, 0.0, 0.05, size=(0.04, 0.04, 0.04), frame="tool"))
+        await bench.graph.settle()
+        attached = message("moveit_msgs/msg/AttachedCollisionObject", link_name="tool")
+        attached.object.id, attached.touch_links = "cup", ["flange"]
+        publisher = bench.node.create_publisher(
+            "moveit_msgs/msg/AttachedCollisionObject", "attached_collision_object", 10
+        )
+        publisher.publish(attached)
+        await bench.graph.settle()
+        scene = (await bench.call("GetPlanningScene", "get_planning_scene")).scene
+        assert not scene.world.collision_objects
+        held = scene.robot_state.attached_collision_objects[0]
+        assert (held.object.id, held.link_name, held.object.header.frame_id) == ("cup", "tool", "tool")
+        assert held.object.pose.position.z == pytest.approx(0.05)
+        await bench.set_state(pan=0.5)
+        attached.object.operation = b"\x01"
+        publisher.publish(attached)
+        await bench.graph.settle()
+        scene = (await bench.call("GetPlanningScene", "get_planning_scene")).scene
+        assert not scene.robot_state.attached_collision_objects
+        position = scene.world.collision_objects[0].pose.position
+        assert np.arctan2(position.y, position.x) == pytest.approx(0.5, abs=1e-6)
+
+    async def test_objects_move_grow_and_go(self, bench) -> None:
+        async def apply(collision_object: Any) -> Any:
+            scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+            scene.world.collision_objects = [collision_object]
+            response = await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)
+            components = message("moveit_msgs/msg/PlanningSceneComponents", components=24)
+            objects = (await bench.call("GetPlanningScene", "get_planning_scene", components=components)).scene
+            return response.success, objects.world.collision_objects
+
+        crate = box("crate", 1.0, 0.0, 0.2, size=(0.1, 0.1, 0.1))
+        assert (await apply(crate))[0]
+        moved = message("moveit_msgs/msg/CollisionObject", id="crate", operation=b"\x03")
+        moved.header.frame_id, moved.pose.position.y = "base", 2.0
+        is_applied, objects = await apply(moved)
+        assert is_applied
+        assert (objects[0].pose.position.x, objects[0].pose.position.y) == (0.0, 2.0)
+        grown = box("crate", 0.0, 3.0, 0.0, size=(0.1, 0.1, 0.1))
+        grown.operation = b"\x02"
+        _, objects = await apply(grown)
+        assert len(objects[0].primitives) == 2
+        assert objects[0].primitive_poses[1].position.y == pytest.approx(1.0)
+        is_applied, objects = await apply(message("moveit_msgs/msg/CollisionObject", id="crate", operation=b"\x01"))
+        assert (is_applied, objects) == (True, [])
+        assert not (await apply(moved))[0]
+        assert not (await apply(box("crate", 0.0, 0.0, 0.0, size=(0.0, 1.0, 1.0))))[0]
+
+    async def test_allowed_collisions_are_set_and_told(self, bench) -> None:
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.world.collision_objects = [box("crate", 0.0, 0.0, 0.45, size=(0.3, 0.3, 0.3))]
+        scene.allowed_collision_matrix.default_entry_names = ["crate"]
+        scene.allowed_collision_matrix.default_entry_values = [True]
+        await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)
+        assert (await bench.call("GetStateValidity", "check_state_validity", group_name="arm")).valid
+        matrix = (await bench.call("GetPlanningScene", "get_planning_scene")).scene.allowed_collision_matrix
+        assert matrix.default_entry_names == ["crate"]
+
+
+class TestPlans:
+    async def test_plan_of_service_starts_at_current_state(self, bench) -> None:
+        request = motion_request(joint_constraints(pan=1.0), max_velocity_scaling_factor=1.0)
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        result = response.motion_plan_response
+        assert result.error_code.val == 1
+        points = result.trajectory.joint_trajectory.points
+        np.testing.assert_allclose(points[0].positions, (0.0, 0.6, 1.2, 0.0, 1.0, 0.0), atol=1e-6)
+        np.testing.assert_allclose(points[-1].positions, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), atol=1e-6)
+        assert points[-1].time_from_start.sec + points[-1].time_from_start.nanosec * 1e-9 > 0.3
+
+    async def test_failure_has_a_code_and_a_reason(self, bench, logged) -> None:
+        request = motion_request(joint_constraints(lift=2.0, elbow=-2.0))
+        request.start_state.attached_collision_objects = []
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        code = response.motion_plan_response.error_code
+        assert code.val in (code.GOAL_IN_COLLISION, code.SUCCESS)
+        request = motion_request(joint_constraints(pan=9.0))
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        assert response.motion_plan_response.error_code.val == code.INVALID_GOAL_CONSTRAINTS
+        assert "a joint of the goal is outside of its bounds" in logged("ERROR")
+
+    @pytest.mark.parametrize(
+        ("changes", "code"),
+        [
+            ({"group_name": "leg"}, "INVALID_GROUP_NAME"),
+            ({"goal_constraints": []}, "INVALID_GOAL_CONSTRAINTS"),
+        ],
+    )
+    async def test_invalid_request(self, bench, changes: dict[str, Any], code: str) -> None:
+        request = motion_request(joint_constraints())
+        for name, value in changes.items():
+            setattr(request, name, value)
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        error_code = response.motion_plan_response.error_code
+        assert error_code.val == getattr(error_code, code)
+
+    async def test_unavailable_planner_is_replaced_with_a_warning(self, bench, logged) -> None:
+        request = motion_request(joint_constraints(**START), planner_id="Unknown")
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        assert response.motion_plan_response.error_code.val == 1
+        assert "Planner 'Unknown' is not available; RRTConnect takes its place" in logged("WARN")
+
+    async def test_pilz_line(self, bench) -> None:
+        fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"])
+        start = fk.pose_stamped[0].pose
+        region = message("moveit_msgs/msg/BoundingVolume")
+        region.primitives = [message("shape_msgs/msg/SolidPrimitive", type=2, dimensions=[0.001])]
+        region.primitive_poses = [message("geometry_msgs/msg/Pose", position=start.position)]
+        region.primitive_poses[0].position.y += 0.1
+        position = message("moveit_msgs/msg/PositionConstraint", link_name="tool", constraint_region=region)
+        position.header.frame_id = "base"
+        orientation = message("moveit_msgs/msg/OrientationConstraint", link_name="tool", orientation=start.orientation)
+        orientation.header.frame_id = "base"
+        goal = message(
+            "moveit_msgs/msg/Constraints", position_constraints=[position], orientation_constraints=[orientation]
+        )
+        request = motion_request(goal, pipeline_id="pilz_industrial_motion_planner", planner_id="LIN")
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        result = response.motion_plan_response
+        assert result.error_code.val == 1
+        for point in result.trajectory.joint_trajectory.points[::3]:
+            names = result.trajectory.joint_trajectory.joint_names
+            robot_state = state(**dict(zip(names, point.positions, strict=True)))
+            fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"], robot_state=robot_state)
+            tool = fk.pose_stamped[0].pose.position
+            assert tool.x == pytest.approx(start.position.x, abs=2e-3)
+
+    async def test_cartesian_path_stops_before_obstacle(self, bench) -> None:
+        fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"])
+        waypoint = fk.pose_stamped[0].pose
+        waypoint.position.y += 0.2
+        fields = {"group_name": "arm", "waypoints": [waypoint], "max_step": 0.01}
+        free = await bench.call("GetCartesianPath", "compute_cartesian_path", avoid_collisions=True, **fields)
+        assert (free.error_code.val, free.fraction) == (1, 1.0)
+        position = waypoint.position
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.world.collision_objects = [box("wall", position.x, position.y, position.z, size=(0.3, 0.1, 0.3))]
+        await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)
+        blocked = await bench.call("GetCartesianPath", "compute_cartesian_path", avoid_collisions=True, **fields)
+        assert 0.0 < blocked.fraction < 0.8
+        ignoring = await bench.call("GetCartesianPath", "compute_cartesian_path", **fields)
+        assert ignoring.fraction == 1.0
+
+
+class TestExecution:
+    async def test_goal_is_planned_and_executed(self, bench) -> None:
+        feedback: list[str] = []
+        status, result = await bench.send(
+            "MoveGroup", "move_action", request=motion_request(joint_constraints(pan=0.3))
+        )
+        assert status == GoalStatus.SUCCEEDED, result.error_code
+        assert result.error_code.val == 1
+        assert len(bench.received) == 1
+        assert bench.received[0].joint_names == ["pan", "lift", "elbow", "roll", "bend", "twist"]
+        assert bench.received[0].points[-1].positions[0] == pytest.approx(0.3)
+        assert feedback == []
+
+    async def test_plan_only_sends_nothing(self, bench) -> None:
+        options = message("moveit_msgs/msg/PlanningOptions", plan_only=True)
+        status, result = await bench.send(
+            "MoveGroup", "move_action", request=motion_request(joint_constraints()), planning_options=options
+        )
+        assert status == GoalStatus.SUCCEEDED
+        assert result.planned_trajectory.joint_trajectory.points
+        assert bench.received == []
+
+    async def test_failed_controller_fails_the_goal(self, bench, logged) -> None:
+        bench.fails = True
+        status, result = await bench.send("MoveGroup", "move_action", request=motion_request(joint_constraints()))
+        assert status == GoalStatus.ABORTED
+        assert result.error_code.val == result.error_code.CONTROL_FAILED
+        assert "Controller 'arm_controller' failed: aborted" in logged("ERROR")
+
+    async def test_gripper_gets_its_last_position(self, bench) -> None:
+        trajectory = message("moveit_msgs/msg/RobotTrajectory")
+        trajectory.joint_trajectory.joint_names = ["left"]
+        trajectory.joint_trajectory.points = [
+            message("trajectory_msgs/msg/JointTrajectoryPoint", positions=[position]) for position in (0.0, 0.02)
+        ]
+        status, _ = await bench.send("ExecuteTrajectory", "execute_trajectory", trajectory=trajectory)
+        assert status == GoalStatus.SUCCEEDED
+        assert bench.received[0].position == pytest.approx(0.02)
+
+    async def test_trajectory_must_start_at_the_robot(self, bench, logged) -> None:
+        trajectory = message("moveit_msgs/msg/RobotTrajectory")
+        trajectory.joint_trajectory.joint_names = ["pan"]
+        trajectory.joint_trajectory.points = [message("trajectory_msgs/msg/JointTrajectoryPoint", positions=[1.0])]
+        status, result = await bench.send("ExecuteTrajectory", "execute_trajectory", trajectory=trajectory)
+        assert (status, result.error_code.val) == (GoalStatus.ABORTED, result.error_code.CONTROL_FAILED)
+        assert any("start point deviates from current robot state" in text for text in logged("ERROR"))
+
+    async def test_joint_without_controller(self, bench) -> None:
+        trajectory = message("moveit_msgs/msg/RobotTrajectory")
+        trajectory.joint_trajectory.joint_names = ["tail"]
+        trajectory.joint_trajectory.points = [message("trajectory_msgs/msg/JointTrajectoryPoint", positions=[0.0])]
+        status, result = await bench.send("ExecuteTrajectory", "execute_trajectory", trajectory=trajectory)
+        assert (status, result.error_code.val) == (GoalStatus.ABORTED, result.error_code.CONTROL_FAILED)
+
+
+class TestStart:
+    @pytest.mark.parametrize("name", ["robot_description", "robot_description_semantic"])
+    def test_missing_description_is_an_error(self, graph, name: str) -> None:
+        with pytest.raises(LinkwrightError) as error:
+            MoveGroup(graph, NodeOptions(parameters={**PARAMETERS, name: ""}))
+        assert error.value.diagnostics[0].code == "ARM104"
+
+    async def test_planners_are_listed_by_pipeline(self, bench) -> None:
+        interfaces = (await bench.call("QueryPlannerInterfaces", "query_planner_interface")).planner_interfaces
+        assert {item.pipeline_id: item.planner_ids for item in interfaces} == {
+            "ompl": ["RRTConnectkConfigDefault", "Unknown"],
+            "pilz_industrial_motion_planner": ["PTP", "LIN"],
+        }
