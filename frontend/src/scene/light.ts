@@ -1,5 +1,5 @@
 /** The share of a surface's color that is visible even where the camera's light does not reach. */
-export const AMBIENT = 0.2;
+export const AMBIENT_SHARE = 0.2;
 
 /** The lighting: RViz's light at the camera, a soft one at the camera, a studio, or the lights of a world. */
 export type Lighting = "Camera" | "Soft" | "Studio" | "World";
@@ -17,7 +17,7 @@ export function usesSceneLights(lighting: Lighting): boolean {
  */
 export const SURFACE_LIGHT = /* glsl */ `
   vec3 byCamera(vec3 color, float facing) {
-    return color * (${AMBIENT.toFixed(2)} + ${(1 - AMBIENT).toFixed(2)} * max(0.0, facing));
+    return color * (${AMBIENT_SHARE.toFixed(2)} + ${(1 - AMBIENT_SHARE).toFixed(2)} * max(0.0, facing));
   }
   vec3 reflected(vec3 color, vec3 normal) {
     float away = 1.0 - max(0.0, normal.z);

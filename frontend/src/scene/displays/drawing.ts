@@ -21,7 +21,7 @@ export interface DrawingContext {
   /** Returns the current camera of the 3-D view. */
   readonly camera: () => Camera;
   /** Whether a light with shadows would not make the page slow. */
-  readonly affordsStudio: () => boolean;
+  readonly canAffordStudio: () => boolean;
 }
 
 /** The scene just drawn, for displays that draw it a second time. */

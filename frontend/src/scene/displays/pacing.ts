@@ -11,10 +11,10 @@ export class Pacing {
   }
 
   /** Returns whether to update in a frame at this time; `interval` in ms, 0 for every frame. */
-  isDue(now: number, interval: number): boolean {
-    const waitMs = this.lastUpdateMs + interval - now;
+  shouldUpdate(nowMs: number, intervalMs: number): boolean {
+    const waitMs = this.lastUpdateMs + intervalMs - nowMs;
     if (waitMs <= 0) {
-      this.lastUpdateMs = now;
+      this.lastUpdateMs = nowMs;
       return true;
     }
     this.timer ??= setTimeout(() => {

@@ -115,8 +115,8 @@ export class Modeler {
     if (!drop) return;
     const { placing, position } = drop;
     const { canvas, size } = this.stage.viewport;
-    const box = canvas.getBoundingClientRect();
-    if (position) this.placer.drop(placing, position.x - box.left, position.y - box.top);
+    const canvasRect = canvas.getBoundingClientRect();
+    if (position) this.placer.drop(placing, position.x - canvasRect.left, position.y - canvasRect.top);
     else this.placer.drop(placing, size.width / 2, size.height / 2);
   }
 
@@ -124,7 +124,7 @@ export class Modeler {
     const { modeling, tools } = this.session;
     if (modeling.isActive !== this.wasActive) {
       this.wasActive = modeling.isActive;
-      if (modeling.isActive) tools.choose(tools.default);
+      if (modeling.isActive) tools.activate(tools.default);
       else this.displace(new Map());
     }
     this.displacements = new Map();

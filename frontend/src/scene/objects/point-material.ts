@@ -31,7 +31,7 @@ export interface PointVariant {
 // square, -1 to 1; `halfSide` is half the side of the square, m. Solid styles trace the ray through the fragment into the
 // point. All other values are constant over a point and therefore flat: interpolation makes software renderers a fifth
 // slower per point.
-const VERTEX = /* glsl */ `
+const VERTEX_SHADER = /* glsl */ `
   uniform vec3 extent;
   uniform vec3 color;
   uniform float pixels;
@@ -87,7 +87,7 @@ const VERTEX = /* glsl */ `
   }
 `;
 
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   precision highp float;
   uniform mat4 projectionMatrix;
   uniform mat4 modelViewMatrix;
@@ -161,11 +161,11 @@ const DEFINES: Readonly<Record<PointStyle, Record<string, string>>> = {
 };
 
 /** Returns the material of a variant; `setLook` and `setViewport` set its uniforms. */
-export function pointMaterial({ style, isTinted, hasQuads, isSeeThrough }: PointVariant): ShaderMaterial {
+export function createPointMaterial({ style, isTinted, hasQuads, isSeeThrough }: PointVariant): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
-    vertexShader: VERTEX,
-    fragmentShader: FRAGMENT,
+    vertexShader: VERTEX_SHADER,
+    fragmentShader: FRAGMENT_SHADER,
     defines: { ...DEFINES[style], ...(isTinted && { TINTED: "" }), ...(hasQuads && { QUADS: "" }) },
     uniforms: {
       extent: { value: new Vector3() },

@@ -5,7 +5,7 @@ import { SURFACE_LIGHT } from "../light";
 export const TEXELS_PER_SLOT = 4;
 const SLOTS_PER_ROW = 64;
 
-const READING = /* glsl */ `
+const SLOT_FUNCTIONS = /* glsl */ `
   attribute float slot;
   uniform highp sampler2D slots;
   vec4 texel(int part) {
@@ -16,14 +16,14 @@ const READING = /* glsl */ `
     return vec3((uvec3(rgb) >> uvec3(16u, 8u, 0u)) & 255u) * (1.0 / 255.0);
   }
 `;
-const LIGHT = /* glsl */ `
+const LIGHT_FUNCTIONS = /* glsl */ `
   uniform bool isSoft;
   ${SURFACE_LIGHT}
   vec3 lit(vec3 color, vec3 normal) { return isSoft ? softly(color, normal) : byCamera(color, normal.z); }
 `;
-const VERTEX = /* glsl */ `
-  ${READING}
-  ${LIGHT}
+const VERTEX_SHADER = /* glsl */ `
+  ${SLOT_FUNCTIONS}
+  ${LIGHT_FUNCTIONS}
   attribute vec3 color;
   varying vec4 vColor;
   void main() {
@@ -36,15 +36,15 @@ const VERTEX = /* glsl */ `
     gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
   }
 `;
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   varying vec4 vColor;
   void main() { gl_FragColor = vColor; }
 `;
 
 // Both sides are lit, as in three.js: a normal belongs to the side from which the triangle's corners run
 // counterclockwise.
-const LIT_VERTEX = /* glsl */ `
-  ${READING}
+const LIT_VERTEX_SHADER = /* glsl */ `
+  ${SLOT_FUNCTIONS}
   flat varying vec3 vColor;
   varying vec3 vNormal;
   void main() {
@@ -57,8 +57,8 @@ const LIT_VERTEX = /* glsl */ `
     gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
   }
 `;
-const LIT_FRAGMENT = /* glsl */ `
-  ${LIGHT}
+const LIT_FRAGMENT_SHADER = /* glsl */ `
+  ${LIGHT_FUNCTIONS}
   flat varying vec3 vColor;
   varying vec3 vNormal;
   void main() {
@@ -91,7 +91,7 @@ export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, col
  * faster.
  */
 export function createSlotMaterial(slots: { value: Texture }, isSoft = { value: false }): ShaderMaterial {
-  return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots, isSoft } });
+  return new ShaderMaterial({ vertexShader: VERTEX_SHADER, fragmentShader: FRAGMENT_SHADER, uniforms: { slots, isSoft } });
 }
 
 /**
@@ -99,5 +99,5 @@ export function createSlotMaterial(slots: { value: Texture }, isSoft = { value: 
  * the camera.
  */
 export function createLitSlotMaterial(slots: { value: Texture }, isSoft: { value: boolean }): ShaderMaterial {
-  return new ShaderMaterial({ vertexShader: LIT_VERTEX, fragmentShader: LIT_FRAGMENT, uniforms: { slots, isSoft }, side: DoubleSide });
+  return new ShaderMaterial({ vertexShader: LIT_VERTEX_SHADER, fragmentShader: LIT_FRAGMENT_SHADER, uniforms: { slots, isSoft }, side: DoubleSide });
 }

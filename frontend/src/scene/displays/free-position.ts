@@ -1,10 +1,10 @@
 import { Box3, Vector3, type Matrix4 } from "three";
 
 /** Half the side of the free space, and the distance between the places that are tried, m. */
-const HALF_SIDE = 0.5;
-const STEP = 1;
+const HALF_SIDE_M = 0.5;
+const STEP_M = 1;
 /** Objects up to this height count as floor, m. */
-const FLOOR_HEIGHT = 0.05;
+const FLOOR_HEIGHT_M = 0.05;
 /** The maximum number of steps in each direction. */
 const MAX_STEPS = 20;
 const DIRECTIONS = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
@@ -17,16 +17,16 @@ const DIRECTIONS = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
  * @param world - the pose of the world in the fixed frame.
  * @param center - the center of the robots, in the fixed frame, m; null for the origin of the world.
  */
-export function findFreePlace(boxes: readonly Box3[], world: Matrix4, center: Vector3 | null = null): number[] {
+export function findFreePosition(boxes: readonly Box3[], world: Matrix4, center: Vector3 | null = null): number[] {
   const toWorld = world.clone().invert();
   const { x: startX, y: startY } = center === null ? new Vector3() : center.clone().applyMatrix4(toWorld).round();
   const isFree = (position: readonly number[]): boolean => {
     const [x, y, z] = new Vector3().fromArray(position).applyMatrix4(world).toArray();
-    const freeBox = new Box3(new Vector3(x - HALF_SIDE, y - HALF_SIDE, z + FLOOR_HEIGHT), new Vector3(x + HALF_SIDE, y + HALF_SIDE, z + 2 * HALF_SIDE));
+    const freeBox = new Box3(new Vector3(x - HALF_SIDE_M, y - HALF_SIDE_M, z + FLOOR_HEIGHT_M), new Vector3(x + HALF_SIDE_M, y + HALF_SIDE_M, z + 2 * HALF_SIDE_M));
     return !boxes.some((box) => box.intersectsBox(freeBox));
   };
-  const places = [[startX, startY, 0]];
-  for (let step = 1; step <= MAX_STEPS; step++) for (const [x, y] of DIRECTIONS) places.push([startX + x * step * STEP, startY + y * step * STEP, 0]);
+  const candidates = [[startX, startY, 0]];
+  for (let step = 1; step <= MAX_STEPS; step++) for (const [x, y] of DIRECTIONS) candidates.push([startX + x * step * STEP_M, startY + y * step * STEP_M, 0]);
   const bounds = boxes.reduce((union, box) => union.union(box), new Box3()).applyMatrix4(toWorld);
-  return places.find(isFree) ?? [Math.ceil(bounds.max.x + HALF_SIDE), 0, 0];
+  return candidates.find(isFree) ?? [Math.ceil(bounds.max.x + HALF_SIDE_M), 0, 0];
 }
