@@ -28,10 +28,10 @@ export class PanelTab implements ITabRenderer {
       return true;
     };
     // A tab cannot contain another focusable element: keyboard users close the panel with Delete.
-    const cross = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, icon("close"));
+    const closeIcon = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, icon("close"));
     // Pressing the close button must not start a drag of the tab.
-    cross.addEventListener("pointerdown", (event) => event.stopPropagation());
-    cross.addEventListener("click", () => this.close());
-    this.element.append(cross);
+    closeIcon.addEventListener("pointerdown", (event) => event.stopPropagation());
+    closeIcon.addEventListener("click", () => this.close());
+    this.element.append(closeIcon);
   }
 }

@@ -1,6 +1,6 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
-import { readSrdf, toSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
+import { parseSrdf, formatSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
@@ -29,7 +29,7 @@ export class PoseBar {
     this.fileInput.addEventListener("change", () => void this.importFile());
     const moreButton = button(texts.more, () => this.openMoreMenu(moreButton), "tool bare", icon("more"));
     moreButton.setAttribute("aria-haspopup", "menu");
-    const entry = h(
+    const nameRow = h(
       "div",
       { class: "bar-row" },
       h("span", { class: "bar-label", title: texts.kept }, texts.label),
@@ -38,7 +38,7 @@ export class PoseBar {
       moreButton,
     );
     this.notice.hidden = true;
-    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, entry, this.chipBox, this.notice, this.fileInput);
+    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, nameRow, this.chipBox, this.notice, this.fileInput);
     const { poses, joints, robotChanged } = session;
     poses.changed.on(() => this.show());
     robotChanged.on(() => this.show());
@@ -98,13 +98,13 @@ export class PoseBar {
   }
 
   private export(): void {
-    saveText(`${this.robotName || "robot"}.srdf`, toSrdf(this.robotName, this.session.poses.posesOf(this.robotName)), "application/xml");
+    saveText(`${this.robotName || "robot"}.srdf`, formatSrdf(this.robotName, this.session.poses.posesOf(this.robotName)), "application/xml");
   }
 
   private async importFile(): Promise<void> {
     const file = this.fileInput.files?.[0];
     if (!file) return;
-    const poses = readSrdf(await file.text());
+    const poses = parseSrdf(await file.text());
     this.fileInput.value = "";
     this.notice.hidden = poses.length > 0;
     this.notice.textContent = strings.description.poses.nothingFound;

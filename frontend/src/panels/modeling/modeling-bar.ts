@@ -48,8 +48,8 @@ export class ModelingBar {
     this.undoButton = createTool(appendKeys(texts.undo, WORLD_KEYS.undo), "undo", () => modeling.undo());
     this.redoButton = createTool(appendKeys(texts.redo, WORLD_KEYS.redo), "redo", () => modeling.redo());
     this.saveButton = createTool(appendKeys(texts.save, WORLD_KEYS.save), "save", () => commands.save());
-    const createLine = (): HTMLElement => h("span", { class: "bar-line" });
-    const tools = [...this.addButtons.values(), createLine(), ...this.modeButtons.values(), this.snapButton, createLine(), this.undoButton, this.redoButton, this.saveButton];
+    const createSeparator = (): HTMLElement => h("span", { class: "bar-line" });
+    const tools = [...this.addButtons.values(), createSeparator(), ...this.modeButtons.values(), this.snapButton, createSeparator(), this.undoButton, this.redoButton, this.saveButton];
     this.element = h("div", { class: "simulation-tools modeling-tools", role: "toolbar", aria: { label: texts.label } }, ...tools);
     for (const signal of [modeling.changed, modeling.selectionChanged, modeling.toolChanged, modeling.snapping.changed]) {
       signal.on(() => this.show());

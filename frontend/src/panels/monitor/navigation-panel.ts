@@ -5,16 +5,16 @@ import { strings } from "../../strings";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
-type Row = "navigation" | "localization" | "goal" | "eta" | "distance" | "taken" | "recoveries";
+type RowName = "navigation" | "localization" | "goal" | "eta" | "distance" | "taken" | "recoveries";
 
-const ROWS: readonly Row[] = ["navigation", "localization", "goal", "eta", "distance", "taken", "recoveries"];
+const ROW_NAMES: readonly RowName[] = ["navigation", "localization", "goal", "eta", "distance", "taken", "recoveries"];
 
 /** nav2's panel "Navigation 2": states of the nodes, progress of the goal, and commands. */
 export class NavigationPanel implements Panel {
   readonly id = "navigation";
   readonly icon = "navigation";
   readonly element: HTMLElement;
-  private readonly values: Record<Row, HTMLElement>;
+  private readonly values: Record<RowName, HTMLElement>;
   private readonly buttons: Record<NavigationCommand, HTMLButtonElement>;
   private readonly problem = h("p", { class: "note wrong", aria: { live: "polite" } });
 
@@ -46,7 +46,7 @@ export class NavigationPanel implements Panel {
         "div",
         { class: "scroll navigation" },
         h("div", { class: "toolbar navigation-buttons" }, ...Object.values(this.buttons)),
-        h("dl", { class: "navigation-rows" }, ...ROWS.flatMap((row) => [h("dt", { class: "toolbar-label" }, texts.rows[row]), h("dd", {}, this.values[row])])),
+        h("dl", { class: "navigation-rows" }, ...ROW_NAMES.flatMap((row) => [h("dt", { class: "toolbar-label" }, texts.rows[row]), h("dd", {}, this.values[row])])),
         this.problem,
       ),
     );
@@ -58,7 +58,7 @@ export class NavigationPanel implements Panel {
   private show(): void {
     const texts = strings.monitor.navigation;
     const { lastState } = this.state;
-    const setRow = (row: Row, text: string, kind = ""): void => {
+    const setRow = (row: RowName, text: string, kind = ""): void => {
       this.values[row].textContent = text;
       this.values[row].dataset["state"] = kind;
     };
@@ -74,16 +74,16 @@ export class NavigationPanel implements Panel {
     setRow("distance", lastState?.distance === null || lastState?.distance === undefined ? texts.none : `${lastState.distance.toFixed(2)} m`);
     setRow("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? texts.none : String(lastState.recoveries));
     this.problem.textContent = lastState?.problem ?? "";
-    this.enable();
+    this.updateButtons();
   }
 
   /** Enables the buttons whose commands are possible now. */
-  private enable(): void {
+  private updateButtons(): void {
     const { lastState } = this.state;
     const managers = lastState ? [lastState.navigation, lastState.localization].filter((state) => state !== "unknown") : [];
     const isActive = managers.includes("active");
     const isIdle = managers.includes("inactive");
-    const can: Record<NavigationCommand, boolean> = {
+    const isPossible: Record<NavigationCommand, boolean> = {
       startup: isIdle,
       pause: isActive,
       resume: isIdle,
@@ -91,7 +91,7 @@ export class NavigationPanel implements Panel {
       cancel: lastState?.goal === "active",
     };
     for (const [command, element] of Object.entries(this.buttons) as [NavigationCommand, HTMLButtonElement][]) {
-      element.disabled = !can[command] || lastState?.busy === true;
+      element.disabled = !isPossible[command] || lastState?.busy === true;
     }
   }
 }

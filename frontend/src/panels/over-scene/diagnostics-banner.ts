@@ -28,7 +28,7 @@ export class DiagnosticsBanner {
 
   constructor(
     private readonly session: Session,
-    private readonly showAll: () => void,
+    private readonly showDiagnostics: () => void,
   ) {
     session.diagnosticsChanged.on(() => this.update());
     this.update();
@@ -62,7 +62,7 @@ export class DiagnosticsBanner {
       ...(item.code === SLOW_CODE && this.imageDisplays.length > 0
         ? [button(texts.withoutImages, () => this.switchOffImages(), "tool", texts.withoutImages)]
         : []),
-      button(texts.show, this.showAll, "tool", texts.show),
+      button(texts.show, this.showDiagnostics, "tool", texts.show),
       ...(isError ? [] : [button(texts.close, () => this.close(item), "tool", icon("close"))]),
     );
   }

@@ -14,12 +14,12 @@ export class SelectionCard {
 
   /**
    * @param column - the column of the card. A card that would cover a robot is folded until the user unfolds it.
-   * @param edit - starts editing the link; null if links cannot be edited.
+   * @param startEditing - starts editing the link; null if links cannot be edited.
    */
   constructor(
     private readonly session: Session,
     private readonly column: CardColumn,
-    private readonly edit: (() => void) | null = null,
+    private readonly startEditing: (() => void) | null = null,
   ) {
     session.selection.changed.on(() => this.update());
     session.provenanceAnswered.on((provenance) => this.show(provenance));
@@ -39,10 +39,10 @@ export class SelectionCard {
     if (wasHidden) this.isFolded = this.column.isOverRobots;
     const { link } = selectedLink;
     const texts = strings.selection;
-    const clear = button(texts.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
-    const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
+    const clearButton = button(texts.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
+    const editButton = this.startEditing && button(strings.editing.editHint, this.startEditing, "tool bare edit-link", icon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), edit, this.createFoldButton(), clear),
+      h("header", {}, icon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), editButton, this.createFoldButton(), clearButton),
       ...createDetails(link),
       createPlace(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...createTrail(link),
@@ -57,14 +57,14 @@ export class SelectionCard {
       show(!this.isFolded);
       this.column.onCardToggled();
     };
-    const fold: HTMLButtonElement = button(texts.fold, toggle, "tool bare fold", icon("chevron"));
+    const foldButton: HTMLButtonElement = button(texts.fold, toggle, "tool bare fold", icon("chevron"));
     const show = (isFolded: boolean): void => {
       this.isFolded = isFolded;
       this.element.classList.toggle("folded", isFolded);
-      fold.setAttribute("aria-expanded", String(!isFolded));
+      foldButton.setAttribute("aria-expanded", String(!isFolded));
     };
     show(this.isFolded);
-    return fold;
+    return foldButton;
   }
 
   /** Replaces the plain trail with the calls and values, which the server sends a moment later. */
@@ -90,19 +90,19 @@ function createPlace(link: LinkScene, showSource: (file: string, line: number) =
   const place = link.place;
   if (!place) return h("p", { class: "hint" }, texts.noPlace);
   const fullPlace = formatPlace(place.file, place.line, place.column);
-  const copy = button(
+  const copyButton = button(
     texts.copy,
     () => {
       void navigator.clipboard.writeText(fullPlace).then(() => {
-        copy.classList.add("done");
-        copy.title = texts.copied;
+        copyButton.classList.add("done");
+        copyButton.title = texts.copied;
       });
     },
     "tool bare",
     icon("copy"),
   );
-  const text = button(fullPlace, () => showSource(place.file, place.line), "place", icon("file"), formatPlace(shortenPath(place.file), place.line, place.column));
-  return h("div", { class: "card-place" }, text, copy);
+  const placeButton = button(fullPlace, () => showSource(place.file, place.line), "place", icon("file"), formatPlace(shortenPath(place.file), place.line, place.column));
+  return h("div", { class: "card-place" }, placeButton, copyButton);
 }
 
 function createTrail(link: LinkScene): HTMLElement[] {

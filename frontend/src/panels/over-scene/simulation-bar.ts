@@ -7,15 +7,15 @@ import { ModelingBar } from "../modeling/modeling-bar";
 import type { WorldCommands } from "../modeling/world-commands";
 import { SpawnDialog } from "./spawn-dialog";
 
-const NOTICE_MS = 8000;
+const NOTICE_DURATION_MS = 8000;
 
 /** The toolbar over the scene while there is a simulation: play, pause, step, reset, and the real-time factor. */
 export class SimulationBar {
   readonly element: HTMLElement;
   private readonly playButton: HTMLButtonElement;
   private readonly stepButton: HTMLButtonElement;
-  private readonly factor = h("output", { class: "simulation-figure", title: strings.simulation.factorHint });
-  private readonly time = h("output", { class: "simulation-figure wide", title: strings.simulation.timeHint });
+  private readonly factorText = h("output", { class: "simulation-figure", title: strings.simulation.factorHint });
+  private readonly timeText = h("output", { class: "simulation-figure wide", title: strings.simulation.timeHint });
   private readonly notice = h("div", { class: "simulation-notice", role: "status" });
   private readonly modelButton: HTMLButtonElement;
   private timer = 0;
@@ -30,19 +30,19 @@ export class SimulationBar {
     this.playButton = button(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", icon("pause"));
     this.stepButton = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
     const resetButton = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
-    const addButton = button(texts.spawn, () => this.askSpawn(simulation.findFreePlace()), "scene-tool small", icon("plus"));
+    const addButton = button(texts.spawn, () => this.openSpawnDialog(simulation.findFreePosition()), "scene-tool small", icon("plus"));
     this.modelButton = button(strings.modeling.startEditing, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
-    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factor, this.time);
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factorText, this.timeText);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
     modeling.changed.on(() => this.show());
     simulation.refused.on((text) => this.showNotice(text));
-    simulation.spawnRequested.on((position) => this.askSpawn(position));
+    simulation.spawnRequested.on((position) => this.openSpawnDialog(position));
     this.show();
   }
 
   private show(): void {
-    const { isPresent, isPaused, time, factor } = this.simulation;
+    const { isPresent, isPaused, time, realTimeFactor } = this.simulation;
     const texts = strings.simulation;
     this.element.hidden = !isPresent;
     const label = isPaused ? texts.play : texts.pause;
@@ -53,8 +53,8 @@ export class SimulationBar {
     }
     this.stepButton.disabled = !isPaused;
     this.showModeling();
-    this.factor.textContent = factor === null ? "–" : `${factor.toFixed(2)}×`;
-    this.time.textContent = time === null ? "–" : `${time.toFixed(1)} s`;
+    this.factorText.textContent = realTimeFactor === null ? "–" : `${realTimeFactor.toFixed(2)}×`;
+    this.timeText.textContent = time === null ? "–" : `${time.toFixed(1)} s`;
   }
 
   private showModeling(): void {
@@ -71,10 +71,10 @@ export class SimulationBar {
     if (this.spawnDialog !== null) return; // the dialog shows the answer
     clearTimeout(this.timer);
     this.notice.textContent = text;
-    this.timer = window.setTimeout(() => (this.notice.textContent = ""), NOTICE_MS);
+    this.timer = window.setTimeout(() => (this.notice.textContent = ""), NOTICE_DURATION_MS);
   }
 
-  private askSpawn(position: readonly number[]): void {
+  private openSpawnDialog(position: readonly number[]): void {
     this.spawnDialog = new SpawnDialog(this.simulation, this.modeling, position, () => (this.spawnDialog = null));
   }
 }

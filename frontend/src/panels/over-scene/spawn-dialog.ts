@@ -37,8 +37,8 @@ export class SpawnDialog {
       h("div", { class: "spawn-row" }, h("span", {}, texts.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
       this.message,
     ];
-    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.submit() }];
-    this.dialog = new Dialog(texts.spawnTitle, rows, choices, "spawn-dialog");
+    const dialogButtons = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.submit() }];
+    this.dialog = new Dialog(texts.spawnTitle, rows, dialogButtons, "spawn-dialog");
     const unsubscribers = [
       modeling.modelsArrived.on((models) => {
         this.models = models;

@@ -24,10 +24,10 @@ export class Toolbar {
     private readonly fit: () => void,
     private readonly showKeys: () => void,
     /** The button to the right of the tools. */
-    private readonly talk: HTMLElement,
+    private readonly talkButton: HTMLElement,
   ) {
     tools.listChanged.on(() => this.build());
-    tools.currentChanged.on(() => this.mark());
+    tools.currentChanged.on(() => this.markCurrent());
     this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.build();
   }
@@ -54,8 +54,8 @@ export class Toolbar {
     const fitButton = button(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, texts.fit));
     fitButton.setAttribute("aria-label", texts.fit);
     const helpButton = button(texts.help, this.showKeys, "scene-tool small", icon("keys"));
-    this.element.replaceChildren(...this.buttons.values(), addButton, removeButton, h("span", { class: "spacer" }), fitButton, this.talk, helpButton);
-    this.mark();
+    this.element.replaceChildren(...this.buttons.values(), addButton, removeButton, h("span", { class: "spacer" }), fitButton, this.talkButton, helpButton);
+    this.markCurrent();
   }
 
   private createToolButton(tool: ToolState): HTMLButtonElement {
@@ -63,15 +63,15 @@ export class Toolbar {
     const name = translateToolName(tool);
     const texts = strings.tools;
     const label = tool.isSupported && entry ? texts.withKey(name, entry.key) : texts.unknown(tool.cls);
-    const sign = icon(entry?.icon ?? "unknown");
-    const toolButton = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
+    const toolIcon = icon(entry?.icon ?? "unknown");
+    const toolButton = button(label, () => this.tools.activate(tool), "scene-tool", toolIcon, h("span", { class: "tool-name" }, name));
     toolButton.setAttribute("aria-label", name);
     toolButton.disabled = !tool.isSupported;
     if (entry) toolButton.setAttribute("aria-keyshortcuts", entry.key);
     return toolButton;
   }
 
-  private mark(): void {
+  private markCurrent(): void {
     const { current } = this.tools;
     for (const [tool, toolButton] of this.buttons) {
       toolButton.setAttribute("aria-pressed", String(tool === current));

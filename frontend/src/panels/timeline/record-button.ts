@@ -4,7 +4,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { Dialog, showNotice } from "../../widgets/dialog";
 import { openMenu, type MenuEntry } from "../../widgets/menu";
-import { saveFrom } from "../../widgets/save-file";
+import { saveFromUrl } from "../../widgets/save-file";
 import { chooseTopics } from "./record-dialog";
 import { formatAmount, formatLength, formatSeconds } from "./timeline-text";
 
@@ -111,7 +111,7 @@ export class RecordButton {
         { label: strings.shell.ok },
         {
           label: texts.openHere,
-          isMain: true,
+          isPrimary: true,
           run: () => {
             this.session.recording.viewRequested.emit(file);
             return undefined;
@@ -123,5 +123,5 @@ export class RecordButton {
 }
 
 function downloadFile(file: RecordedFile): void {
-  saveFrom(`${file.name}.mcap`, new URL(file.url, document.baseURI).href);
+  saveFromUrl(`${file.name}.mcap`, new URL(file.url, document.baseURI).href);
 }

@@ -32,7 +32,7 @@ export function createTalkButton(voice: VoiceState, className: string, ...texts:
   // A long press must not open the context menu.
   element.addEventListener("contextmenu", (event) => event.preventDefault());
   const show = (): void => {
-    const isTalking = voice.isHeld || voice.isPanelOpen;
+    const isTalking = voice.isHeld || voice.isAlwaysListening;
     element.setAttribute("aria-pressed", String(isTalking));
     element.classList.toggle("talking", isTalking);
     element.classList.toggle("wrong", voice.microphone.problem !== null);
