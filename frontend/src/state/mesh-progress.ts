@@ -26,7 +26,7 @@ export class MeshProgress {
   }
 
   /** Starts tracking a file, whose loader then reports its progress. */
-  begin(name: string): LoadReport {
+  startLoad(name: string): LoadReport {
     const load: MeshLoad = { name, bytes: 0, total: null, stage: "fetching" };
     const show = (): void => {
       this.shownLoads.add(load);
