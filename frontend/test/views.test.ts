@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { FIELD_OF_VIEW, onGround, castRay, type Camera } from "../src/state/views/camera";
+import { FIELD_OF_VIEW_RAD, intersectGround, castRay, type Camera } from "../src/state/views/camera";
 import { controllerOf } from "../src/state/views/catalog";
 import { transformBounds } from "../src/state/views/fit";
 import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
@@ -79,7 +79,7 @@ describe("Orbit", () => {
   it("pans so that the focal plane follows the pointer", () => {
     const change = ORBIT.drag(FOCUSED, createDrag({ middle: true, dy: SIZE.height }));
     const motion = ["X", "Y", "Z"].map((axis) => Number(change[`Focal Point/${axis}`]) - Number(FOCUSED[`Focal Point/${axis}`]));
-    expect(Math.hypot(...motion)).toBeCloseTo(2 * 2 * Math.tan(FIELD_OF_VIEW / 2));
+    expect(Math.hypot(...motion)).toBeCloseTo(2 * 2 * Math.tan(FIELD_OF_VIEW_RAD / 2));
     expect(ORBIT.drag(FOCUSED, createDrag({ left: true, shift: true, dy: SIZE.height }))).toEqual(change);
   });
 
@@ -115,9 +115,9 @@ describe("XYOrbit", () => {
 
   it("keeps the ground under the pointer, at most one meter per step", () => {
     const drag = createDrag({ middle: true, dx: 12, dy: -7 });
-    const pointBefore = onGround(castRay(GROUND.computeCamera(values), drag.x, drag.y, SIZE));
+    const pointBefore = intersectGround(castRay(GROUND.computeCamera(values), drag.x, drag.y, SIZE));
     const valuesAfter = { ...values, ...GROUND.drag(values, drag) };
-    expectClose(onGround(castRay(GROUND.computeCamera(valuesAfter), drag.x + 12, drag.y - 7, SIZE)) ?? [], pointBefore ?? [NaN]);
+    expectClose(intersectGround(castRay(GROUND.computeCamera(valuesAfter), drag.x + 12, drag.y - 7, SIZE)) ?? [], pointBefore ?? [NaN]);
     expect(valuesAfter["Focal Point/Z"]).toBe(0);
     const limitedChange = GROUND.drag(values, createDrag({ middle: true, dy: -300 }));
     expect(Math.hypot(Number(limitedChange["Focal Point/X"]) - 1, Number(limitedChange["Focal Point/Y"]) - 2)).toBeLessThanOrEqual(1 + 1e-9);
@@ -179,7 +179,7 @@ describe("TopDownOrtho", () => {
 
   it("maps a pixel to the ground", () => {
     const camera = MAP.computeCamera({ Scale: 100, Angle: 0, X: 1, Y: 2 });
-    expectClose(onGround(castRay(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
+    expectClose(intersectGround(castRay(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
   });
 });
 
@@ -228,7 +228,7 @@ describe("a fitted view", () => {
   /** Returns the distances of a box's corners from the center of the canvas, right and up; 1 is the edge. */
   function extentOnCanvas(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
     const camera = ORBIT.computeCamera(values);
-    const edge = Math.tan(FIELD_OF_VIEW / 2);
+    const edge = Math.tan(FIELD_OF_VIEW_RAD / 2);
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i): Vector => {
       return [(i & 1 ? min : max)[0], (i & 2 ? min : max)[1], (i & 4 ? min : max)[2]];
     });
@@ -270,7 +270,7 @@ describe("a fitted view", () => {
       expectClose(projectPoint(camera, [3.2, -0.7, 2.5]), [0, 0]);
       expectClose(camera.back, controllerNamed(name).computeCamera(start).back);
       const [, top] = projectPoint(camera, [3, -1, 3]);
-      expect(Math.abs(top)).toBeLessThan(Math.tan(FIELD_OF_VIEW / 2));
+      expect(Math.abs(top)).toBeLessThan(Math.tan(FIELD_OF_VIEW_RAD / 2));
     }
     expect(MAP.fit({ Scale: 10, Angle: 0 }, box, SIZE)).toEqual({ X: 3.2, Y: -0.7, Scale: expect.closeTo(600 / 0.6 / 1.2) as number });
   });

@@ -93,11 +93,11 @@ export class Sidebar {
   private createViews(): HTMLElement[] {
     const texts = strings.sharing.exported;
     const sides = SIDES.map((side) => button(texts.sides[side], () => this.actions.lookFrom(side), "tool", texts.sides[side]));
-    const recall = ({ cls, values }: View): void => {
+    const applyView = ({ cls, values }: View): void => {
       this.session.view.setClass(cls);
       this.session.view.update(values);
     };
-    const savedViewButtons = this.session.view.savedViews.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
+    const savedViewButtons = this.session.view.savedViews.map(({ view }) => button(view.name, () => applyView(view), "tool", view.name));
     const resetButton = button(texts.startHint, () => this.actions.reset(), "tool", icon("reset"), texts.start);
     return [...sides, ...savedViewButtons, resetButton];
   }
@@ -114,9 +114,9 @@ export class Sidebar {
     joints.positionsChanged.on(update);
     angleUnits.changed.on(() => rows.forEach((row) => row.showUnit()));
     update();
-    const bar = createJointBar(this.session);
+    const toolbar = createJointBar(this.session);
     const emptyHint = h("p", { class: "empty" }, texts.none);
-    const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [emptyHint];
+    const content = rows.length > 0 ? [toolbar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [emptyHint];
     return h("section", { class: "joint-section", aria: { label: strings.sharing.exported.joints } }, h("h2", {}, strings.sharing.exported.joints), ...content);
   }
 }

@@ -9,7 +9,7 @@ import type { ToolsState } from "../state/tools";
 import { strings } from "../strings";
 import { formatShortcut, SHORTCUTS } from "../widgets/shortcuts";
 
-type Row = readonly [keys: string, meaning: string];
+type KeyRow = readonly [keys: string, meaning: string];
 
 /** The sheet of all keys of the page, which `?` opens. */
 export class KeySheet {
@@ -42,10 +42,10 @@ export class KeySheet {
     dialog.showModal();
   }
 
-  private createSections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
+  private createSections(): (readonly [title: string, rows: readonly KeyRow[], note?: string])[] {
     const texts = strings.keys;
     const { shell, displays, modeling, terminal } = strings;
-    const tools = this.tools.tools.flatMap((tool): Row[] => {
+    const tools = this.tools.tools.flatMap((tool): KeyRow[] => {
       const entry = TOOLS.get(tool.cls);
       return entry ? [[entry.key.toUpperCase(), translateToolName(tool)]] : [];
     });
@@ -123,7 +123,7 @@ export class KeySheet {
   }
 }
 
-function createSection(title: string, rows: readonly Row[], note?: string): HTMLElement {
+function createSection(title: string, rows: readonly KeyRow[], note?: string): HTMLElement {
   const list = rows.flatMap(([keys, meaning]) => [h("dt", {}, h("kbd", {}, keys)), h("dd", {}, meaning)]);
   return h("section", {}, h("h2", {}, title), h("dl", {}, ...list), note === undefined ? null : h("p", { class: "hint" }, note));
 }

@@ -15,8 +15,8 @@ import type { ShareMenu } from "./share-menu";
 /** The head of the page: menus, the configuration file, and commands for the whole page. */
 export class TitleBar {
   readonly element: HTMLElement;
-  private readonly title = h("span", { class: "document-title" });
-  private readonly file = h("span", { class: "file-name" });
+  private readonly titleText = h("span", { class: "document-title" });
+  private readonly fileText = h("span", { class: "file-name" });
   private readonly undoButton: HTMLButtonElement;
   private readonly redoButton: HTMLButtonElement;
   private programTitle = "";
@@ -47,8 +47,8 @@ export class TitleBar {
       h("nav", { class: "menu-bar", aria: { label: texts.menu } }, ...menus),
       this.undoButton,
       this.redoButton,
-      this.file,
-      this.title,
+      this.fileText,
+      this.titleText,
       h("span", { class: "spacer" }),
       share.element,
       this.createOwnSwitch(),
@@ -74,9 +74,9 @@ export class TitleBar {
     const texts = strings.shell;
     const { current, fileName } = this.session.configuration;
     const name = fileName ?? texts.untitled;
-    this.file.replaceChildren(name, current.unsaved ? h("span", { class: "unsaved", title: texts.unsaved }, "●") : "");
-    this.file.title = `${current.path ?? texts.untitled}${current.unsaved ? ` (${texts.unsaved})` : ""}`;
-    this.title.textContent = this.programTitle;
+    this.fileText.replaceChildren(name, current.unsaved ? h("span", { class: "unsaved", title: texts.unsaved }, "●") : "");
+    this.fileText.title = `${current.path ?? texts.untitled}${current.unsaved ? ` (${texts.unsaved})` : ""}`;
+    this.titleText.textContent = this.programTitle;
     document.title = `${current.unsaved ? "● " : ""}${this.programTitle || name} - Linkwright`;
     this.undoButton.disabled = current.undo === null;
     this.redoButton.disabled = current.redo === null;
@@ -89,7 +89,7 @@ export class TitleBar {
     const { files } = this;
     const { current } = this.session.configuration;
     return [
-      { label: texts.newFile, icon: "file", run: () => files.begin() },
+      { label: texts.newFile, icon: "file", run: () => files.createFile() },
       { label: texts.open, icon: "open", keys: formatShortcut(SHORTCUTS.open), run: () => files.chooseFile() },
       { label: texts.openLocal, icon: "upload", run: () => files.chooseLocal() },
       { label: strings.recording.open, hint: strings.recording.openFileHint, icon: "play", run: () => this.recordings.choose() },
@@ -103,7 +103,7 @@ export class TitleBar {
         run: () => files.revert(),
       },
       ...current.recent.map((path, index) => ({
-        label: shorten(path),
+        label: shortenLongPath(path),
         hint: path,
         icon: "recent" as const,
         hasLineAbove: index === 0,
@@ -177,7 +177,7 @@ function bindArrowKeys(menus: readonly HTMLButtonElement[]): void {
   }
 }
 
-function shorten(path: string): string {
+function shortenLongPath(path: string): string {
   return path.length <= 60 ? path : `…${path.slice(-58)}`;
 }
 

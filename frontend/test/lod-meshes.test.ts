@@ -1,11 +1,11 @@
 import { BoxGeometry, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, SphereGeometry } from "three";
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { beforeAll, describe, expect, it } from "vitest";
-import { PICKABLE } from "../src/scene/layers";
-import { createStandIn, type StandIn, type Triangles } from "../src/scene/meshes/stand-in";
-import type { StandInAnswer, StandInRequest } from "../src/scene/meshes/stand-in-worker";
-import { StandIns, type StandInWorker } from "../src/scene/meshes/stand-ins";
-import { levelsFor, MovingMeshes, type MovingPiece } from "../src/scene/robot/moving-meshes";
+import { PICKABLE_LAYER } from "../src/scene/layers";
+import { createLodMesh, type LodMesh, type Triangles } from "../src/scene/meshes/lod-mesh";
+import type { LodMeshResponse, LodMeshRequest } from "../src/scene/meshes/lod-mesh-worker";
+import { LodMeshes, type LodMeshWorker } from "../src/scene/meshes/lod-meshes";
+import { chooseLevels, MovingMeshes, type MovingPiece } from "../src/scene/robot/moving-meshes";
 
 beforeAll(() => MeshoptSimplifier.ready);
 
@@ -21,8 +21,8 @@ function separateTriangles(geometry: BufferGeometry): Triangles {
   return toTriangles(flatGeometry);
 }
 
-function createDefaultStandIn(mesh: Triangles): StandIn {
-  return createStandIn(mesh, MeshoptSimplifier);
+function createDefaultStandIn(mesh: Triangles): LodMesh {
+  return createLodMesh(mesh, MeshoptSimplifier);
 }
 
 function viewpointAt(distance: number): { camera: PerspectiveCamera; height: number } {
@@ -33,11 +33,11 @@ function viewpointAt(distance: number): { camera: PerspectiveCamera; height: num
 }
 
 /** A worker that answers when the test tells it to. */
-function createWorker(): { createWorker: StandInWorker; requests: StandInRequest[]; answer: (standIns: StandInAnswer["standIns"]) => void } {
-  const requests: StandInRequest[] = [];
-  const worker: StandInWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
-  const answer = (standIns: StandInAnswer["standIns"]): void => {
-    worker.onmessage?.({ data: { id: requests.at(-1)!.id, standIns } } as MessageEvent<StandInAnswer>);
+function createWorker(): { createWorker: LodMeshWorker; requests: LodMeshRequest[]; answer: (standIns: LodMeshResponse["lodMeshes"]) => void } {
+  const requests: LodMeshRequest[] = [];
+  const worker: LodMeshWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
+  const answer = (standIns: LodMeshResponse["lodMeshes"]): void => {
+    worker.onmessage?.({ data: { id: requests.at(-1)!.id, lodMeshes: standIns } } as MessageEvent<LodMeshResponse>);
   };
   return { createWorker: worker, requests, answer };
 }
@@ -80,41 +80,41 @@ describe("a stand-in", () => {
 describe("stand-ins of meshes", () => {
   it("are requested once, one for each group", () => {
     const { createWorker: worker, requests, answer } = createWorker();
-    const standIns = new StandIns(() => worker);
+    const standIns = new LodMeshes(() => worker);
     const geometry = new BoxGeometry(1, 1, 1);
-    expect(standIns.standInsOf(geometry)).toBeNull();
-    expect(standIns.standInsOf(geometry)).toBeNull();
+    expect(standIns.lodMeshesOf(geometry)).toBeNull();
+    expect(standIns.lodMeshesOf(geometry)).toBeNull();
     expect(requests).toHaveLength(1);
     expect(requests[0]?.pieces).toHaveLength(6);
     expect(requests[0]?.pieces[0]?.index).toHaveLength(6);
-    const pieceStandIns = requests[0]!.pieces.map((piece) => createStandIn(piece, MeshoptSimplifier));
+    const pieceStandIns = requests[0]!.pieces.map((piece) => createLodMesh(piece, MeshoptSimplifier));
     answer(pieceStandIns);
-    expect(standIns.standInsOf(geometry)).toBe(pieceStandIns);
+    expect(standIns.lodMeshesOf(geometry)).toBe(pieceStandIns);
   });
 
   it("do not exist if the worker does not run", () => {
     const { createWorker: worker } = createWorker();
-    const standIns = new StandIns(() => worker);
+    const standIns = new LodMeshes(() => worker);
     const geometry = new SphereGeometry();
-    standIns.standInsOf(geometry);
+    standIns.lodMeshesOf(geometry);
     worker.onerror?.({} as ErrorEvent);
-    expect(standIns.standInsOf(geometry)).toEqual([]);
+    expect(standIns.lodMeshesOf(geometry)).toEqual([]);
   });
 });
 
 describe("moving meshes", () => {
-  const createBall = (): MovingPiece => ({ standIn: createDefaultStandIn(toTriangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
+  const createBall = (): MovingPiece => ({ lodMesh: createDefaultStandIn(toTriangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
 
   it("are coarser at a greater distance, and absent outside the view", () => {
     const piece = createBall();
-    const levels = [2, 5, 50, 500].map((distance) => levelsFor([piece], viewpointAt(distance))[0]);
+    const levels = [2, 5, 50, 500].map((distance) => chooseLevels([piece], viewpointAt(distance))[0]);
     expect(levels).toEqual([...levels].sort((a, b) => a! - b!));
     expect(new Set(levels).size).toBeGreaterThan(2);
-    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], viewpointAt(5))).toEqual([null]);
+    expect(chooseLevels([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], viewpointAt(5))).toEqual([null]);
     // From inside nothing is left out.
-    expect(levelsFor([piece], viewpointAt(0.5))).toEqual([0]);
+    expect(chooseLevels([piece], viewpointAt(0.5))).toEqual([0]);
     // A hundred times as large from a hundred times the distance looks the same.
-    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], viewpointAt(500))).toEqual(levelsFor([piece], viewpointAt(5)));
+    expect(chooseLevels([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], viewpointAt(500))).toEqual(chooseLevels([piece], viewpointAt(5)));
   });
 
   it("replace the meshes until the frame is drawn", () => {
@@ -125,7 +125,7 @@ describe("moving meshes", () => {
     expect(moving.drawnCounts.pieces).toBe(2);
     expect(moving.drawnCounts.triangles).toBeLessThan(48 * 32);
     expect(mesh.layers.isEnabled(0)).toBe(false);
-    expect(mesh.layers.isEnabled(PICKABLE)).toBe(true);
+    expect(mesh.layers.isEnabled(PICKABLE_LAYER)).toBe(true);
     expect(parent.children).toHaveLength(1);
     moving.end();
     expect(mesh.layers.isEnabled(0)).toBe(true);
