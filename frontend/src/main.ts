@@ -18,7 +18,7 @@ import "./styles/editing.css";
 import "./styles/learning.css";
 import { Connection, createSocketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
-import { button, coalesce, h, isFramed } from "./dom";
+import { createButton, coalesce, h, isFramed } from "./dom";
 import { publishInspection } from "./inspection";
 import { ComparisonPanel } from "./panels/description/comparison-panel";
 import { DiagnosticsPanel } from "./panels/description/diagnostics-panel";
@@ -202,7 +202,7 @@ function start(app: HTMLElement): void {
   if (isFramed()) {
     document.documentElement.classList.add("framed");
     const openTab = (): unknown => window.open(tokens.link, "_blank", "noopener");
-    titleBar.element.append(button(strings.shell.openTabHint, openTab, "tool", strings.shell.openTab));
+    titleBar.element.append(createButton(strings.shell.openTabHint, openTab, "tool", strings.shell.openTab));
   }
   bindFileKeys(session.configuration, fileCommands, sourcePanel, panels.filter(({ id }) => CONFIGURATION_PANELS.includes(id)).map(({ element }) => element));
   bindCourseKeys(session.course);

@@ -40,7 +40,7 @@ describe("the frame loop", () => {
     const drawnCount = loop.framesDrawn;
     runScreen(5000);
     expect(loop.framesDrawn).toBe(drawnCount);
-    expect(loop.framesPerSecond(now)).toBeNull();
+    expect(loop.computeFrameRate(now)).toBeNull();
   });
 
   it("draws nothing while suspended, and the pending frame afterwards", () => {

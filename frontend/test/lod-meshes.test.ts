@@ -21,7 +21,7 @@ function separateTriangles(geometry: BufferGeometry): Triangles {
   return toTriangles(flatGeometry);
 }
 
-function createDefaultStandIn(mesh: Triangles): LodMesh {
+function createDefaultLodMesh(mesh: Triangles): LodMesh {
   return createLodMesh(mesh, MeshoptSimplifier);
 }
 
@@ -33,18 +33,18 @@ function viewpointAt(distance: number): { camera: PerspectiveCamera; height: num
 }
 
 /** A worker that answers when the test tells it to. */
-function createWorker(): { createWorker: LodMeshWorker; requests: LodMeshRequest[]; answer: (standIns: LodMeshResponse["lodMeshes"]) => void } {
+function createWorker(): { worker: LodMeshWorker; requests: LodMeshRequest[]; answer: (lodMeshes: LodMeshResponse["lodMeshes"]) => void } {
   const requests: LodMeshRequest[] = [];
   const worker: LodMeshWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
-  const answer = (standIns: LodMeshResponse["lodMeshes"]): void => {
-    worker.onmessage?.({ data: { id: requests.at(-1)!.id, lodMeshes: standIns } } as MessageEvent<LodMeshResponse>);
+  const answer = (lodMeshes: LodMeshResponse["lodMeshes"]): void => {
+    worker.onmessage?.({ data: { id: requests.at(-1)!.id, lodMeshes } } as MessageEvent<LodMeshResponse>);
   };
-  return { createWorker: worker, requests, answer };
+  return { worker, requests, answer };
 }
 
-describe("a stand-in", () => {
+describe("an LOD mesh", () => {
   it("has fewer triangles at each level, and stays within the error", () => {
-    const { positions, levels } = createDefaultStandIn(separateTriangles(new SphereGeometry(1, 48, 32)));
+    const { positions, levels } = createDefaultLodMesh(separateTriangles(new SphereGeometry(1, 48, 32)));
     expect(levels.length).toBeGreaterThan(3);
     expect(levels[0]?.error).toBe(0);
     for (let i = 1; i < levels.length; i++) {
@@ -63,47 +63,47 @@ describe("a stand-in", () => {
   });
 
   it("merges the vertices of separate triangles, but not across edges", () => {
-    const box = createDefaultStandIn(separateTriangles(new BoxGeometry(1, 1, 1)));
+    const box = createDefaultLodMesh(separateTriangles(new BoxGeometry(1, 1, 1)));
     expect(box.positions.length / 3).toBe(24);
     expect(box.levels[0]?.index.length).toBe(36);
-    const round = createDefaultStandIn(separateTriangles(new SphereGeometry(1, 24, 16)));
+    const round = createDefaultLodMesh(separateTriangles(new SphereGeometry(1, 24, 16)));
     expect(round.positions.length / 3).toBeLessThan(25 * 17);
   });
 
   it("does not exist for a mesh without area", () => {
-    const { levels, sphere } = createDefaultStandIn({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
+    const { levels, boundingSphere: sphere } = createDefaultLodMesh({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
     expect(levels).toEqual([{ error: 0, index: new Uint32Array(0) }]);
     expect(sphere[3]).toBe(0);
   });
 });
 
-describe("stand-ins of meshes", () => {
+describe("LOD meshes of a geometry", () => {
   it("are requested once, one for each group", () => {
-    const { createWorker: worker, requests, answer } = createWorker();
-    const standIns = new LodMeshes(() => worker);
+    const { worker, requests, answer } = createWorker();
+    const lodMeshes = new LodMeshes(() => worker);
     const geometry = new BoxGeometry(1, 1, 1);
-    expect(standIns.lodMeshesOf(geometry)).toBeNull();
-    expect(standIns.lodMeshesOf(geometry)).toBeNull();
+    expect(lodMeshes.getOrRequest(geometry)).toBeNull();
+    expect(lodMeshes.getOrRequest(geometry)).toBeNull();
     expect(requests).toHaveLength(1);
     expect(requests[0]?.pieces).toHaveLength(6);
     expect(requests[0]?.pieces[0]?.index).toHaveLength(6);
-    const pieceStandIns = requests[0]!.pieces.map((piece) => createLodMesh(piece, MeshoptSimplifier));
-    answer(pieceStandIns);
-    expect(standIns.lodMeshesOf(geometry)).toBe(pieceStandIns);
+    const pieceLodMeshes = requests[0]!.pieces.map((piece) => createLodMesh(piece, MeshoptSimplifier));
+    answer(pieceLodMeshes);
+    expect(lodMeshes.getOrRequest(geometry)).toBe(pieceLodMeshes);
   });
 
   it("do not exist if the worker does not run", () => {
-    const { createWorker: worker } = createWorker();
-    const standIns = new LodMeshes(() => worker);
+    const { worker } = createWorker();
+    const lodMeshes = new LodMeshes(() => worker);
     const geometry = new SphereGeometry();
-    standIns.lodMeshesOf(geometry);
+    lodMeshes.getOrRequest(geometry);
     worker.onerror?.({} as ErrorEvent);
-    expect(standIns.lodMeshesOf(geometry)).toEqual([]);
+    expect(lodMeshes.getOrRequest(geometry)).toEqual([]);
   });
 });
 
 describe("moving meshes", () => {
-  const createBall = (): MovingPiece => ({ lodMesh: createDefaultStandIn(toTriangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
+  const createBall = (): MovingPiece => ({ lodMesh: createDefaultLodMesh(toTriangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
 
   it("are coarser at a greater distance, and absent outside the view", () => {
     const piece = createBall();
@@ -121,13 +121,13 @@ describe("moving meshes", () => {
     const parent = new Object3D();
     const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial());
     const moving = new MovingMeshes(parent);
-    moving.begin([createBall(), createBall()], [mesh], viewpointAt(50));
+    moving.replaceMeshes([createBall(), createBall()], [mesh], viewpointAt(50));
     expect(moving.drawnCounts.pieces).toBe(2);
     expect(moving.drawnCounts.triangles).toBeLessThan(48 * 32);
     expect(mesh.layers.isEnabled(0)).toBe(false);
     expect(mesh.layers.isEnabled(PICKABLE_LAYER)).toBe(true);
     expect(parent.children).toHaveLength(1);
-    moving.end();
+    moving.restoreMeshes();
     expect(mesh.layers.isEnabled(0)).toBe(true);
     expect(parent.children).toHaveLength(0);
     moving.dispose();

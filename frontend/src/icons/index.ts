@@ -81,7 +81,7 @@ export type IconName = keyof typeof ICON_PATHS;
 
 const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
 
-export function icon(name: IconName, className = ""): SVGSVGElement {
+export function createIcon(name: IconName, className = ""): SVGSVGElement {
   const svg = document.createElementNS(SVG_NAMESPACE, "svg");
   svg.setAttribute("viewBox", "0 0 16 16");
   svg.setAttribute("class", `icon ${className}`.trim());

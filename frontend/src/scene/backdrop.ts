@@ -25,18 +25,18 @@ const VERTEX_SHADER = /* glsl */ `
   uniform mat4 unprojected;
   uniform mat4 toWorld;
   uniform vec3 zenith, horizon, ground;
-  varying vec3 shown;
+  varying vec3 skyColor;
   void main() {
-    vec4 seen = unprojected * vec4(position.xy, 1.0, 1.0);
-    vec3 ray = isOrthographic ? vec3(0.0, 0.0, -1.0) : seen.xyz / seen.w;
+    vec4 viewPoint = unprojected * vec4(position.xy, 1.0, 1.0);
+    vec3 ray = isOrthographic ? vec3(0.0, 0.0, -1.0) : viewPoint.xyz / viewPoint.w;
     float up = normalize(mat3(toWorld) * ray).z;
-    shown = up > 0.0 ? mix(horizon, zenith, pow(up, 0.7)) : mix(horizon, ground, smoothstep(0.0, 0.75, pow(-up, 0.8)));
+    skyColor = up > 0.0 ? mix(horizon, zenith, pow(up, 0.7)) : mix(horizon, ground, smoothstep(0.0, 0.75, pow(-up, 0.8)));
     gl_Position = vec4(position.xy, 1.0, 1.0);
   }
 `;
 const FRAGMENT_SHADER = /* glsl */ `
-  varying vec3 shown;
-  void main() { gl_FragColor = vec4(shown, 1.0); }
+  varying vec3 skyColor;
+  void main() { gl_FragColor = vec4(skyColor, 1.0); }
 `;
 
 /**

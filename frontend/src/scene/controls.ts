@@ -76,15 +76,15 @@ export class Controls {
   private pinch(event: ToolEvent, oldDistance: number): void {
     const { x, y, dx, dy } = event;
     const halfMotion = { dx: dx / 2, dy: dy / 2, x: x - dx, y: y - dy };
-    this.view.drag({ ...this.stage.viewport.size, ...halfMotion, left: false, middle: true, right: false, shift: false });
+    this.view.drag({ ...this.stage.viewport.size, ...halfMotion, isLeftDown: false, isMiddleDown: true, isRightDown: false, isShiftDown: false });
     const newDistance = Math.max(1, this.measureFingerDistance());
-    if (oldDistance > 0) this.view.wheel((1 - oldDistance / newDistance) * PINCH_UNIT, false);
+    if (oldDistance > 0) this.view.handleWheel((1 - oldDistance / newDistance) * PINCH_UNIT, false);
   }
 
   private onPointerEnd(event: PointerEvent, isComplete: boolean): void {
     if (!this.pointers.delete(event.pointerId)) return;
     const isClick = isComplete && this.travelledPx < CLICK_SLOP_PX;
-    this.emit({ ...this.createToolEvent("up", event), click: isClick });
+    this.emit({ ...this.createToolEvent("up", event), isClick });
   }
 
   private onPointerLeave(event: PointerEvent): void {
@@ -117,13 +117,13 @@ export class Controls {
       dy: type === "move" ? y - this.lastPosition.y : 0,
       wheel: 0,
       button: isButtonEvent ? (BUTTON_NAMES[event.button] ?? null) : null,
-      left: (buttons & 1) !== 0,
-      middle: (buttons & 4) !== 0,
-      right: (buttons & 2) !== 0,
-      shift: event.shiftKey,
-      ctrl: event.ctrlKey || event.metaKey,
-      alt: event.altKey,
-      click: false,
+      isLeftDown: (buttons & 1) !== 0,
+      isMiddleDown: (buttons & 4) !== 0,
+      isRightDown: (buttons & 2) !== 0,
+      isShiftDown: event.shiftKey,
+      isCtrlDown: event.ctrlKey || event.metaKey,
+      isAltDown: event.altKey,
+      isClick: false,
     };
   }
 
@@ -132,7 +132,7 @@ export class Controls {
     const { size } = this.stage.viewport;
     const dragView = (dx: number, dy: number): void => {
       const center = { x: size.width / 2, y: size.height / 2 };
-      const buttons = { left: !event.shiftKey, middle: event.shiftKey, right: false, shift: false };
+      const buttons = { isLeftDown: !event.shiftKey, isMiddleDown: event.shiftKey, isRightDown: false, isShiftDown: false };
       this.view.drag({ ...size, ...center, ...buttons, dx, dy });
     };
     switch (event.key) {
@@ -150,10 +150,10 @@ export class Controls {
         break;
       case "+":
       case "=":
-        this.view.wheel(WHEEL_NOTCH, false);
+        this.view.handleWheel(WHEEL_NOTCH, false);
         break;
       case "-":
-        this.view.wheel(-WHEEL_NOTCH, false);
+        this.view.handleWheel(-WHEEL_NOTCH, false);
         break;
       default:
         return;

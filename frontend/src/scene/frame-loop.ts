@@ -89,7 +89,7 @@ export class FrameLoop {
   }
 
   /** Returns the number of frames in the last second; null while the scene is idle. */
-  framesPerSecond(nowMs: number): number | null {
+  computeFrameRate(nowMs: number): number | null {
     this.recentTimes = this.recentTimes.filter((timeMs) => nowMs - timeMs < 1000);
     return nowMs - this.lastDrawnMs > IDLE_AFTER_MS ? null : this.recentTimes.length;
   }

@@ -49,7 +49,7 @@ function computeOrbitValues(world: InitialViewWorld, camera: Matrix4): ViewValue
   return orbitFrom(focal.toArray(), viewpoint.toArray());
 }
 
-/** Whether nothing except robots is between a camera and a place. */
+/** Whether nothing except robots is between a camera and a position. */
 function canSee(world: InitialViewWorld, viewpoint: Vector, position: Vector): boolean {
   const start = new Vector3(...viewpoint);
   const direction = new Vector3(...position).sub(start);

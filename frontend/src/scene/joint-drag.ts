@@ -43,19 +43,19 @@ export class JointDrag {
   /** Handles a mouse event; returns false if the event is left to the active tool. */
   onPointer(event: ToolEvent): boolean {
     if (this.currentGrab) {
-      if (event.type === "move" && event.left) this.pull(this.currentGrab, event);
-      else if (event.type === "up" && !event.left) this.release();
+      if (event.type === "move" && event.isLeftDown) this.pull(this.currentGrab, event);
+      else if (event.type === "up" && !event.isLeftDown) this.release();
       return true;
     }
     const { joints, tools } = this.session;
-    const isEnabled = joints.controls !== null && (event.alt || joints.dragsWithoutAlt) && event.type !== "leave";
+    const isEnabled = joints.controls !== null && (event.isAltDown || joints.dragsWithoutAlt) && event.type !== "leave";
     if (!isEnabled || (tools.current && !COMPATIBLE_TOOLS.includes(tools.current.cls))) {
       this.stopHovering();
       return false;
     }
     this.requestAxes();
-    if (event.type === "down" && event.button === "left" && !event.shift) return this.grab(event);
-    if (event.type === "move" && !event.left && !event.middle && !event.right) return this.hover(event);
+    if (event.type === "down" && event.button === "left" && !event.isShiftDown) return this.grab(event);
+    if (event.type === "move" && !event.isLeftDown && !event.isMiddleDown && !event.isRightDown) return this.hover(event);
     return false;
   }
 

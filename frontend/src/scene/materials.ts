@@ -62,9 +62,9 @@ export const RVIZ_RED = [1, 0, 0] as const;
 export const MIN_OPAQUE_ALPHA = 0.9998;
 
 /** Makes a material translucent or opaque. */
-export function setBlending(material: Material, isSeeThrough: boolean): void {
-  material.transparent = isSeeThrough;
-  material.depthWrite = !isSeeThrough;
+export function setBlending(material: Material, isTranslucent: boolean): void {
+  material.transparent = isTranslucent;
+  material.depthWrite = !isTranslucent;
   material.needsUpdate = true;
 }
 
@@ -102,12 +102,12 @@ export class MaterialPool {
     this.usedKeys.add(key);
     let material = this.materials.get(key);
     if (!material) {
-      const isSeeThrough = look.alpha < MIN_OPAQUE_ALPHA;
+      const isTranslucent = look.alpha < MIN_OPAQUE_ALPHA;
       const style = {
         color: new Color(...look.color),
         opacity: look.alpha,
-        transparent: isSeeThrough,
-        depthWrite: !isSeeThrough,
+        transparent: isTranslucent,
+        depthWrite: !isTranslucent,
         map: look.map,
         vertexColors: look.hasVertexColors,
         side: look.isDoubleSided ? DoubleSide : FrontSide,

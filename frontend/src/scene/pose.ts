@@ -6,7 +6,7 @@ const position = new Vector3();
 const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
-/** Computes the matrix of a pose, x y z (m) qx qy qz qw, from index `at` on. */
+/** Computes the matrix of a pose, x y z (m) qx qy qz qw, from index `offset` on. */
 export function setPoseMatrix(values: ArrayLike<number>, matrix: Matrix4, offset = 0): Matrix4 {
   position.fromArray(values, offset);
   orientation.fromArray(values, offset + 3);

@@ -220,9 +220,9 @@ export class Stage {
         const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
         const showWithFrame = (show: () => void): void => this.loop.schedule(show);
-        const camera = (): Camera => this.viewport.camera;
+        const getCamera = (): Camera => this.viewport.camera;
         const canAffordStudio = (): boolean => this.viewport.canAffordStudio;
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, camera, canAffordStudio });
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, getCamera, canAffordStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.onInteractionChanged?.(this.interaction);

@@ -43,7 +43,9 @@ export class SkyAndFog {
     scene.backgroundRotation.x = Math.PI / 2;
   }
 
-  /** Applies surroundings; `isOrthographic` for an orthographic camera, which sees the same color of a sky everywhere. */
+  /**
+   * Applies surroundings; `isOrthographic` for an orthographic camera, which sees the same color of a sky everywhere.
+   */
   apply({ daylight, fog, backdrop = null }: Surroundings, isOrthographic: boolean): void {
     const key = daylight ?? backdrop;
     if (key !== this.skyKey) {

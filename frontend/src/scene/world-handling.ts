@@ -59,14 +59,14 @@ export class WorldHandling {
   /** Handles an event; returns false if it is left to the active tool. */
   onPointer(event: ToolEvent): boolean {
     if (this.currentGrab) {
-      if (event.type === "move" && event.left) this.drag(this.currentGrab, event);
-      else if (event.type === "up" && !event.left) this.release(this.currentGrab);
+      if (event.type === "move" && event.isLeftDown) this.drag(this.currentGrab, event);
+      else if (event.type === "up" && !event.isLeftDown) this.release(this.currentGrab);
       return true;
     }
     const { simulation, modeling, tools } = this.session;
     if (!simulation.isPresent || modeling.isActive || (tools.current && !PASSIVE_TOOLS.includes(tools.current.cls))) return false;
-    if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
-    if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
+    if (event.type === "down" && event.button === "left" && event.isCtrlDown) return this.grab(event);
+    if (event.type === "up" && event.button === "right" && event.isClick) this.openMenu(event);
     return false;
   }
 
@@ -75,13 +75,13 @@ export class WorldHandling {
     const camera = this.stage.viewport.camera;
     if (!picked?.matrix) return false;
     const { drawing, link, point: position, matrix } = picked;
-    const normal = event.shift ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
+    const normal = event.isShiftDown ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
     const plane = new Plane().setFromNormalAndCoplanarPoint(normal, position);
     const point = position.clone().applyMatrix4(matrix.clone().invert());
-    this.currentGrab = { drawing, link, point, startPosition: position.clone(), plane, isPull: event.shift, lastSentMs: -Infinity, offset: new Vector3(), pointerPosition: position.clone(), timer: 0 };
-    if (event.shift) this.currentGrab.timer = window.setInterval(() => this.repeatPull(), REQUEST_INTERVAL_MS);
+    this.currentGrab = { drawing, link, point, startPosition: position.clone(), plane, isPull: event.isShiftDown, lastSentMs: -Infinity, offset: new Vector3(), pointerPosition: position.clone(), timer: 0 };
+    if (event.isShiftDown) this.currentGrab.timer = window.setInterval(() => this.repeatPull(), REQUEST_INTERVAL_MS);
     this.stage.viewport.canvas.style.cursor = "grabbing";
-    if (!event.shift) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
+    if (!event.isShiftDown) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
     return true;
   }
 

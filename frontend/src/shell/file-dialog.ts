@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import type { Folder } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
@@ -29,7 +29,7 @@ export class FileDialog {
     this.nameField.setAttribute("aria-label", texts.fileName);
     this.nameField.spellcheck = false;
     if (kind === "save") this.nameField.value = state.fileName ?? `${texts.untitled}${EXTENSION}`;
-    this.upButton = button(texts.folderUp, () => this.requestFolder(this.folder?.parent ?? null), "tool framed", icon("up"));
+    this.upButton = createButton(texts.folderUp, () => this.requestFolder(this.folder?.parent ?? null), "tool framed", createIcon("up"));
     this.dialog = new Dialog(
       kind === "open" ? texts.openTitle : texts.saveTitle,
       [
@@ -94,7 +94,7 @@ export class FileDialog {
   }
 
   private createEntry(name: string, isFolder: boolean): HTMLLIElement {
-    const entry = h("li", { role: "option", tabIndex: -1 }, icon(isFolder ? "folder" : "file"), name);
+    const entry = h("li", { role: "option", tabIndex: -1 }, createIcon(isFolder ? "folder" : "file"), name);
     const chooseEntry = (): void => {
       if (isFolder) this.requestFolder(joinPath(this.folder?.path ?? "", name));
       else {

@@ -48,19 +48,19 @@ export function bindFileKeys(configuration: ConfigurationState, files: FileComma
     else files.save();
   };
   const bindings = [
-    { shortcut: SHORTCUTS.save, run: save, editor: true },
+    { shortcut: SHORTCUTS.save, run: save, worksInEditor: true },
     { shortcut: SHORTCUTS.saveAs, run: () => files.saveAs() },
     { shortcut: SHORTCUTS.open, run: () => files.chooseFile() },
-    { shortcut: SHORTCUTS.undo, run: () => configuration.undo(), text: true },
-    { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), text: true },
-    { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), text: true },
+    { shortcut: SHORTCUTS.undo, run: () => configuration.undo(), isLeftToTextFields: true },
+    { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), isLeftToTextFields: true },
+    { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), isLeftToTextFields: true },
   ];
   const onKeyDown = (event: KeyboardEvent): void => {
     const target = event.target instanceof Element ? event.target : null;
     const binding = bindings.find(({ shortcut }) => matchesShortcut(event, shortcut));
     if (!binding || target?.closest("dialog, .terminal-screen")) return;
-    if (binding.editor !== true && target?.closest(".source-editor")) return;
-    if (binding.text === true && target?.matches("input[type=text], textarea")) return;
+    if (binding.worksInEditor !== true && target?.closest(".source-editor")) return;
+    if (binding.isLeftToTextFields === true && target?.matches("input[type=text], textarea")) return;
     event.preventDefault();
     event.stopPropagation();
     binding.run(target);

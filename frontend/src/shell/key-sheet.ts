@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import { WORLD_KEYS } from "../panels/modeling/world-commands";
 import { FIT_KEY, translateToolName } from "../panels/over-scene/toolbar";
 import { TERMINAL_KEYS, formatTerminalKey } from "../panels/terminal/terminal-keys";
@@ -25,7 +25,7 @@ export class KeySheet {
   private open(): void {
     const texts = strings.keys;
     const dialog = h("dialog", { class: "key-sheet", aria: { label: texts.title } });
-    const closeButton = button(texts.close, () => dialog.close(), "tool bare", icon("close"));
+    const closeButton = createButton(texts.close, () => dialog.close(), "tool bare", createIcon("close"));
     dialog.append(
       h("header", {}, h("strong", {}, texts.title), h("span", { class: "spacer" }), closeButton),
       h("div", { class: "key-columns" }, ...this.createSections().map(([title, rows, note]) => createSection(title, rows, note))),

@@ -1,5 +1,5 @@
 import type { Tokens } from "../connection/tokens";
-import { button, h } from "../dom";
+import { createButton, h } from "../dom";
 import type { Stage } from "../scene/stage";
 import { formatDuration, VideoRecorder } from "../scene/video";
 import type { Session } from "../state/session";
@@ -24,7 +24,7 @@ export class ShareMenu {
     private readonly tokens: Tokens,
   ) {
     this.recorder = stage && VideoRecorder.isPossible ? createRecorder(stage, (recorder) => this.saveVideo(recorder)) : null;
-    this.stopButton = button(strings.sharing.recording, () => this.recorder?.stop(), "tool recording", "");
+    this.stopButton = createButton(strings.sharing.recording, () => this.recorder?.stop(), "tool recording", "");
     this.element = h("span", { class: "recorder", role: "status" }, this.stopButton);
     this.recorder?.changed.on(() => this.showDuration());
     this.showDuration();

@@ -57,7 +57,7 @@ export class StatusBar {
 
   private updateRate(): void {
     if (!this.stage) return;
-    const rate = this.stage.loop.framesPerSecond(performance.now());
+    const rate = this.stage.loop.computeFrameRate(performance.now());
     const { drawingPace } = this.session;
     const fps = rate === null ? strings.status.idle : strings.status.fps(rate);
     const text = rate !== null && drawingPace.isSlow ? strings.status.slow(fps) : fps;

@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import type { Dock } from "../panels/dock/dock";
 import type { Session } from "../state/session";
 import { THEME_CHOICES, type ThemeState } from "../state/theme";
@@ -31,8 +31,8 @@ export class TitleBar {
   ) {
     const texts = strings.shell;
     const { configuration } = session;
-    this.undoButton = button(texts.undo, () => configuration.undo(), "tool bare", icon("undo"));
-    this.redoButton = button(texts.redo, () => configuration.redo(), "tool bare", icon("redo"));
+    this.undoButton = createButton(texts.undo, () => configuration.undo(), "tool bare", createIcon("undo"));
+    this.redoButton = createButton(texts.redo, () => configuration.redo(), "tool bare", createIcon("redo"));
     const menus = [
       createMenuButton(texts.file, () => this.createFileMenu()),
       createMenuButton(texts.panels, () => this.createPanelsMenu()),
@@ -53,11 +53,11 @@ export class TitleBar {
       share.element,
       this.createOwnSwitch(),
       createThemeButton(theme),
-      button(
+      createButton(
         texts.languageHint,
         changeLanguage,
         "tool language-button",
-        icon("language"),
+        createIcon("language"),
         texts.language,
       ),
     );
@@ -134,8 +134,8 @@ export class TitleBar {
     const choose = (isOwn: boolean) => (): void => {
       if (isOwn !== configuration.current.is_own) location.assign(addressFor(location.href, isOwn));
     };
-    const sharedButton = button(texts.sharedDisplays, choose(false), "", icon("shared"), texts.shared);
-    const ownButton = button(texts.ownHint, choose(true), "", icon("own"), texts.own);
+    const sharedButton = createButton(texts.sharedDisplays, choose(false), "", createIcon("shared"), texts.shared);
+    const ownButton = createButton(texts.ownHint, choose(true), "", createIcon("own"), texts.own);
     const show = (): void => {
       for (const [element, isPressed] of [
         [sharedButton, !configuration.current.is_own],
@@ -157,7 +157,7 @@ function setLabel(element: HTMLButtonElement, name: string, keys: string): void 
 }
 
 function createMenuButton(label: string, createEntries: () => MenuEntry[]): HTMLButtonElement {
-  const element = button(label, () => openMenu(element, createEntries()), "tool menu-button", label);
+  const element = createButton(label, () => openMenu(element, createEntries()), "tool menu-button", label);
   element.setAttribute("aria-haspopup", "menu");
   element.setAttribute("aria-expanded", "false");
   element.removeAttribute("title");
@@ -192,9 +192,9 @@ function createThemeButton(theme: ThemeState): HTMLButtonElement {
     }));
     openMenu(element, entries);
   };
-  const element = button(texts.theme, choose, "tool bare theme-button", icon("system"));
+  const element = createButton(texts.theme, choose, "tool bare theme-button", createIcon("system"));
   element.setAttribute("aria-haspopup", "menu");
-  const show = (): void => element.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
+  const show = (): void => element.replaceChildren(createIcon(theme.theme === "light" ? "light" : "dark"));
   theme.changed.on(show);
   show();
   return element;

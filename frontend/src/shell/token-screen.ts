@@ -1,6 +1,6 @@
 import type { Connection } from "../connection/connection";
 import { extractToken, type Tokens } from "../connection/tokens";
-import { button, h } from "../dom";
+import { createButton, h } from "../dom";
 import { strings } from "../strings";
 import { createLogo } from "../widgets/logo";
 
@@ -20,7 +20,7 @@ export class TokenScreen {
     this.tokenField.placeholder = `${location.origin}/?token=…`;
     this.tokenField.spellcheck = false;
     this.tokenField.autocomplete = "off";
-    const form = h("form", {}, this.tokenField, button(texts.open, () => this.submit(), "tool framed primary", texts.open));
+    const form = h("form", {}, this.tokenField, createButton(texts.open, () => this.submit(), "tool framed primary", texts.open));
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       this.submit();

@@ -13,7 +13,7 @@ export class CourseState {
   course: Course | null = null;
   step: CourseStep | null = null;
   checks: StepChecks | null = null;
-  /** Emitted with the files of the course's state before the shown step, after `askCatchUp`. */
+  /** Emitted with the files of the course's state before the shown step, after `requestCatchUp`. */
   readonly catchUpAnswered = new Signal<CatchUpFiles>();
   /** Why the last request was not carried out. */
   problem: CourseProblem | null = null;

@@ -15,7 +15,7 @@ export interface MeshLoad {
   stage: "fetching" | "reading";
 }
 
-/** The mesh files that take longer than a moment to load. */
+/** The mesh files that take noticeably long to load. */
 export class MeshProgress {
   readonly changed = new Signal();
   private readonly shownLoads = new Set<MeshLoad>();

@@ -8,9 +8,9 @@ import type { TopicChoice } from "../protocol";
 export function findObviousDisplay({ topic, message, classes }: TopicChoice): string | null {
   const type = shortNameOf(message);
   const classesForType = classes.filter((cls) => type.includes(shortNameOf(cls)));
-  const [closest] = classesForType.sort((a, b) => shortNameOf(b).length - shortNameOf(a).length);
+  const [closestClass] = classesForType.sort((a, b) => shortNameOf(b).length - shortNameOf(a).length);
   const classForTopic = classes.find((cls) => topic.includes(firstWordOf(shortNameOf(cls))));
-  return closest ?? classForTopic ?? classes[0] ?? null;
+  return closestClass ?? classForTopic ?? classes[0] ?? null;
 }
 
 /** Returns the first word, such as `robot` for RobotModel. */

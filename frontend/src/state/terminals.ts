@@ -17,7 +17,9 @@ export class TerminalsState {
   readonly changed = new Signal();
   /** The program has got its first terminal, or lost its last one. */
   readonly availabilityChanged = new Signal();
-  /** The connection is new, so that earlier requests get no answers; emitted with whether the program is the same run. */
+  /**
+   * The connection is new, so that earlier requests get no answers; emitted with whether the program is the same run.
+   */
   readonly connected = new Signal<boolean>();
   /** The connection was lost or is back. */
   readonly connectionChanged = new Signal();
@@ -119,7 +121,9 @@ export class TerminalsState {
     this.connected.emit(isSameRun);
   }
 
-  /** Returns terminals where the lost connection does not count as another page; the program may not know of the loss. */
+  /**
+   * Returns terminals where the lost connection does not count as another page; the program may not know of the loss.
+   */
   private ignoreLostConnection(items: readonly TerminalItem[]): TerminalItem[] {
     return items.map((item) => (item.shown === "elsewhere" && this.previouslyShown.has(item.id) ? { ...item, shown: "nowhere" } : item));
   }

@@ -27,8 +27,8 @@ interface Contour {
 }
 
 /**
- * Lays out a tree with its root at the top: each level in a row, each parent centered over its children, and subtrees as
- * close to each other as `gap` permits on every level (after Reingold and Tilford).
+ * Lays out a tree with its root at the top: each level in a row, each parent centered over its children, and subtrees
+ * as close to each other as `gap` permits on every level (after Reingold and Tilford).
  */
 export function layOutTree(root: TreeNode, gap: number, levelGap: number): TidyTree {
   const entries = listInPreorder(root);

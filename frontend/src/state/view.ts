@@ -191,7 +191,7 @@ export class ViewState {
   }
 
   /** Handles the wheel; `delta` is 120 per notch, positive away from the user. */
-  wheel(delta: number, isShiftDown: boolean): void {
+  handleWheel(delta: number, isShiftDown: boolean): void {
     this.update(this.controller.applyWheel(this.view.values, delta, isShiftDown));
   }
 
@@ -315,15 +315,15 @@ export class ViewState {
   }
 
   private clampToBounds(cls: string, values: ViewValues): ViewValues {
-    const clamped: Record<string, PropertyValue> = {};
+    const clampedValues: Record<string, PropertyValue> = {};
     for (const [path, value] of Object.entries(values)) {
       const property = findProperty(this.propertiesOf(cls), path);
-      if (typeof value !== "number") clamped[path] = value;
+      if (typeof value !== "number") clampedValues[path] = value;
       else if (Number.isFinite(value)) {
-        clamped[path] = Math.min(Math.max(value, property?.minimum ?? -Infinity), property?.maximum ?? Infinity);
+        clampedValues[path] = Math.min(Math.max(value, property?.minimum ?? -Infinity), property?.maximum ?? Infinity);
       }
     }
-    return clamped;
+    return clampedValues;
   }
 }
 

@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import type { PropertyValue } from "../protocol";
 import { strings } from "../strings";
 import { TextEditor } from "./text-editor";
@@ -23,7 +23,7 @@ export class NameEditor implements Editor {
   ) {
     const parse = (text: string): string | null => text.trim() || (allowsEmpty ? "" : null);
     this.textEditor = new TextEditor({ format: String, parse, commit });
-    const openButton = button(label, () => this.toggleList(), "drop", icon("chevron"));
+    const openButton = createButton(label, () => this.toggleList(), "drop", createIcon("chevron"));
     openButton.tabIndex = -1;
     this.element = h("span", { class: "frame-editor" }, this.textEditor.element, openButton);
     this.textEditor.element.addEventListener("keydown", (event) => {

@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import { icon, LEVEL_ICONS } from "../icons";
+import { createIcon, LEVEL_ICONS } from "../icons";
 import { createEditor } from "./editors";
 import type { Editor, TreeItem } from "./tree-item";
 
@@ -7,7 +7,7 @@ import type { Editor, TreeItem } from "./tree-item";
 export class TreeRow {
   readonly element: HTMLElement;
   readonly editor: Editor;
-  private readonly foldToggle = h("span", { class: "twist" }, icon("chevron"));
+  private readonly foldToggle = h("span", { class: "twist" }, createIcon("chevron"));
   private readonly icons = h("span", { class: "signs" });
   private readonly title = h("span", { class: "row-title" });
   private readonly badge = h("span", { class: "row-badge" });
@@ -64,7 +64,7 @@ export class TreeRow {
     if (key === this.iconsKey) return;
     this.iconsKey = key;
     this.icons.replaceChildren();
-    if (item.icon) this.icons.append(icon(item.icon));
-    if (level) this.icons.append(icon(LEVEL_ICONS[level], `level-${level}`));
+    if (item.icon) this.icons.append(createIcon(item.icon));
+    if (level) this.icons.append(createIcon(LEVEL_ICONS[level], `level-${level}`));
   }
 }

@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import { strings } from "../strings";
 
 export interface DialogChoice {
@@ -18,7 +18,7 @@ export class Dialog {
 
   constructor(title: string, content: readonly (Node | string)[], choices: readonly DialogChoice[], className = "") {
     const buttons = choices.map((choice) => {
-      const element = button(
+      const element = createButton(
         choice.label,
         () => {
           if (choice.run?.() !== false) this.close();
@@ -31,7 +31,7 @@ export class Dialog {
     this.primaryButton = buttons.find(({ choice }) => choice.isPrimary === true)?.element ?? null;
     const heading = h("h2", {}, title);
     heading.id = `dialog-${String(++dialogCount)}`;
-    const closeButton = button(strings.close, () => this.close(), "tool bare", icon("close"));
+    const closeButton = createButton(strings.close, () => this.close(), "tool bare", createIcon("close"));
     this.element = h(
       "dialog",
       { class: `dialog ${className}`.trim(), aria: { labelledby: heading.id } },

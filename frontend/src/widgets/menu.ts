@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import { icon, type IconName } from "../icons";
+import { createIcon, type IconName } from "../icons";
 
 export interface MenuEntry {
   label: string;
@@ -76,7 +76,7 @@ function createItem(entry: MenuEntry, close: () => void): HTMLLIElement {
   if (entry.isChecked !== undefined) item.setAttribute("aria-checked", String(entry.isChecked));
   if (entry.isDisabled === true) item.setAttribute("aria-disabled", "true");
   if (entry.hint !== undefined) item.title = entry.hint;
-  const entryIcon = entry.isChecked === true ? icon("check") : entry.icon ? icon(entry.icon) : null;
+  const entryIcon = entry.isChecked === true ? createIcon("check") : entry.icon ? createIcon(entry.icon) : null;
   item.append(h("span", { class: "menu-check" }, entryIcon), h("span", { class: "menu-label" }, entry.label));
   if (entry.keys !== undefined) item.append(h("kbd", {}, entry.keys));
   item.addEventListener("click", () => {

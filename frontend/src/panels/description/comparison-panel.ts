@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedLocation } from "../../protocol";
 import { groupDifferences, MARK_COLORS, listUsedMarks, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
@@ -131,13 +131,13 @@ export class ComparisonPanel implements Panel {
     const texts = strings.comparison;
     const { focus, comparison } = this.session;
     const element = comparison.elementOf(first);
-    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, texts.subjects[first.subject]), first.name] as const;
+    const label = [createIcon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, texts.subjects[first.subject]), first.name] as const;
     const select = (): void => {
       focus.select(element);
       this.focusScene();
     };
     const header = element
-      ? button(texts.select(first.name), select, "difference-name", ...label)
+      ? createButton(texts.select(first.name), select, "difference-name", ...label)
       : h("div", { class: "difference-name" }, ...label);
     const group = h(
       "div",
@@ -161,7 +161,7 @@ export class ComparisonPanel implements Panel {
         : h(
             "div",
             { class: "difference-values" },
-            icon(KIND_ICONS[item.kind]),
+            createIcon(KIND_ICONS[item.kind]),
             h("span", { class: "difference-property" }, item.property),
             h("span", { class: "difference-value" }, h("del", {}, formatValue(item.old)), " → ", h("ins", {}, [formatValue(item.new), item.unit].filter((part) => part !== "").join(" "))),
           );
@@ -178,12 +178,12 @@ export class ComparisonPanel implements Panel {
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...parts);
     const name = text.replace(/(:\d+)+$/, "");
-    return button(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...parts);
+    return createButton(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...parts);
   }
 }
 
 function createKindTag(kind: ComparedItem["kind"]): HTMLElement {
-  return h("span", { class: `difference-tag ${kind}` }, icon(KIND_ICONS[kind]), strings.comparison.kinds[kind]);
+  return h("span", { class: `difference-tag ${kind}` }, createIcon(KIND_ICONS[kind]), strings.comparison.kinds[kind]);
 }
 
 function createElementKey({ display, kind, name }: { display: string; kind: string; name: string }): string {

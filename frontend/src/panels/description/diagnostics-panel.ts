@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon, LEVEL_ICONS } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon, LEVEL_ICONS } from "../../icons";
 import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../../protocol";
 import { problemsOf, type DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
@@ -15,7 +15,7 @@ export class DiagnosticsPanel implements Panel {
   readonly element = h("div", { class: "panel diagnostics" });
   private readonly findings = h("div", { aria: { live: "polite" } });
   private readonly displays = h("div");
-  private readonly noFindings = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
+  private readonly noFindings = h("p", { class: "empty" }, createIcon("check", "level-ok"), strings.diagnostics.none);
   private cards: ReadonlyMap<string, ProblemCard> = new Map<string, ProblemCard>();
 
   constructor(private readonly session: Session) {
@@ -62,7 +62,7 @@ export class DiagnosticsPanel implements Panel {
 
   private createRowButton(display: DisplayState): HTMLElement {
     const { displays } = this.session;
-    return button(strings.diagnostics.showDisplay, () => displays.rowRequested.emit(display), "text-link", display.name);
+    return createButton(strings.diagnostics.showDisplay, () => displays.rowRequested.emit(display), "text-link", display.name);
   }
 }
 
@@ -83,7 +83,7 @@ class ProblemCard {
     this.shownKey = key;
     const level = statusRows[0]?.level ?? "ok";
     this.element.className = `diagnostic ${level === "warn" ? "warning" : level}`;
-    this.levelIcon.replaceChildren(icon(LEVEL_ICONS[level], `level-${level}`));
+    this.levelIcon.replaceChildren(createIcon(LEVEL_ICONS[level], `level-${level}`));
     this.title.textContent = name;
     this.list.replaceChildren(...statusRows.map((row) => h("li", {}, formatStatusRow(row))));
   }
@@ -110,7 +110,7 @@ function createCard(item: DiagnosticItem, show: ShowPlace): HTMLElement {
     h(
       "header",
       {},
-      icon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
+      createIcon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
       h("strong", {}, item.message),
       h("code", { class: "code" }, item.code),
     ),
@@ -124,7 +124,7 @@ function createCard(item: DiagnosticItem, show: ShowPlace): HTMLElement {
 function createPlaceButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: ShowPlace): HTMLElement | null {
   if (file === null) return null;
   const text = formatPlace(shortenPath(file), line, column);
-  return button(formatPlace(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
+  return createButton(formatPlace(file, line, column), () => show(file, line ?? 1), "place", createIcon("file"), text);
 }
 
 /** Returns the source line of a finding, with the part in question marked. */

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { layOutDiagram, type Diagram, type DiagramNode } from "../../state/diagram-layout";
 import { isSameElement } from "../../state/element-focus";
@@ -43,14 +43,14 @@ export class DiagramPanel implements Panel {
       (x, y, scale) => this.drawing.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`),
       () => this.fit(),
     );
-    const originsButton = button(texts.originsHint, () => this.toggleOrigins(originsButton), "tool on", texts.origins);
+    const originsButton = createButton(texts.originsHint, () => this.toggleOrigins(originsButton), "tool on", texts.origins);
     originsButton.setAttribute("aria-pressed", "true");
     const toolbar = h(
       "div",
       { class: "toolbar" },
-      button(texts.fitHint, () => this.fit(), "tool", icon("fit"), texts.fit),
-      button(texts.zoomIn, () => this.panZoom.zoomBy(1.25), "tool bare", icon("plus")),
-      button(texts.zoomOut, () => this.panZoom.zoomBy(0.8), "tool bare", icon("minus")),
+      createButton(texts.fitHint, () => this.fit(), "tool", createIcon("fit"), texts.fit),
+      createButton(texts.zoomIn, () => this.panZoom.zoomBy(1.25), "tool bare", createIcon("plus")),
+      createButton(texts.zoomOut, () => this.panZoom.zoomBy(0.8), "tool bare", createIcon("minus")),
       h("span", { class: "spacer" }),
       originsButton,
     );

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
 import { listVisibleRows, LinkTreeState, type TreeRow } from "../../state/link-tree";
@@ -39,8 +39,8 @@ export class LinksPanel implements Panel {
       { class: "toolbar" },
       this.count,
       h("span", { class: "spacer" }),
-      button(texts.expandAll, () => this.setAllFolded(false), "tool bare", icon("expand")),
-      button(texts.collapseAll, () => this.setAllFolded(true), "tool bare", icon("collapse")),
+      createButton(texts.expandAll, () => this.setAllFolded(false), "tool bare", createIcon("expand")),
+      createButton(texts.collapseAll, () => this.setAllFolded(true), "tool bare", createIcon("collapse")),
     );
     this.rows.element.setAttribute("role", "tree");
     this.rows.element.setAttribute("aria-label", texts.linksLabel);
@@ -94,7 +94,7 @@ export class LinksPanel implements Panel {
     const focus = this.session.focus.current;
     const createElementName = (kind: "link" | "joint", elementName: string): ElementName => ({ display: model.display, kind, name: elementName });
     const linkElement = createElementName("link", link.name);
-    const foldToggle = h("span", { class: row.hasChildren ? "twist" : "twist leaf" }, icon("chevron"));
+    const foldToggle = h("span", { class: row.hasChildren ? "twist" : "twist leaf" }, createIcon("chevron"));
     foldToggle.addEventListener("click", (event) => {
       event.stopPropagation();
       this.toggle(index);
@@ -104,7 +104,7 @@ export class LinksPanel implements Panel {
       "div",
       { class: "link-row", role: "treeitem", data: { link: link.name } },
       foldToggle,
-      icon("cube"),
+      createIcon("cube"),
       h("span", { class: "link-name", title: link.name }, link.name),
       findings.length > 0 ? createWarningBadge(findings.map((finding) => finding.message)) : null,
       h("span", { class: "spacer" }),
@@ -126,7 +126,7 @@ export class LinksPanel implements Panel {
     const element = h(
       "span",
       { class: `joint-of ${kind}`, title: `${joint.name} (${strings.description.kinds[kind]})`, data: { joint: joint.name } },
-      icon("joints"),
+      createIcon("joints"),
       h("span", {}, joint.name),
     );
     element.classList.toggle("selected", isSameElement(this.session.focus.current, joint));
@@ -191,5 +191,5 @@ export class LinksPanel implements Panel {
 }
 
 function createWarningBadge(messages: readonly string[]): HTMLElement {
-  return h("span", { class: "level-warn", title: messages.join("\n") }, icon("warn"));
+  return h("span", { class: "level-warn", title: messages.join("\n") }, createIcon("warn"));
 }

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { CallSite, SourceRange } from "../../protocol";
 import { openBrowserStorage } from "../../storage";
 import { EXPANDED_TEXT_KEY, type DescriptionModel, type ElementName } from "../../state/description-model";
@@ -250,10 +250,10 @@ export class SourcePanel implements Panel {
     const { origin, calls } = this.findWrittenPlaces();
     const steps = calls.map(({ macro, file, line, column }) => {
       const text = texts.call(macro, formatPlace(shortenPath(file, 1), line, null));
-      return button(formatPlace(file, line, column), () => this.reveal(file, line, { highlightKind: "focus" }), "trail-step", text);
+      return createButton(formatPlace(file, line, column), () => this.reveal(file, line, { highlightKind: "focus" }), "trail-step", text);
     });
     const backButton = origin && this.requestedPlace
-      ? button(texts.origin, () => this.showFocus(), "tool bare", icon("reset"))
+      ? createButton(texts.origin, () => this.showFocus(), "tool bare", createIcon("reset"))
       : null;
     this.trail.hidden = steps.length === 0;
     this.trail.replaceChildren(h("span", { class: "tag" }, texts.made), ...steps, ...(backButton ? [backButton] : []));

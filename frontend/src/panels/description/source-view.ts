@@ -4,7 +4,9 @@ import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 
 const ROW_HEIGHT_PX = 18;
-/** The maximum number of characters of a line; longer ones are cut, because some files are a single line of a megabyte. */
+/**
+ * The maximum number of characters of a line; longer ones are cut, because some files are a single line of a megabyte.
+ */
 const MAX_LINE_LENGTH = 4000;
 
 /** The lines `firstLine` to `lastLine`, 1-based and inclusive, and how they are marked. */

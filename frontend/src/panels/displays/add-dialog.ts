@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { iconNameOf, icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { iconNameOf, createIcon } from "../../icons";
 import type { DisplayClass, TopicChoice } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import { findObviousDisplay } from "../../state/obvious-display";
@@ -53,7 +53,7 @@ export class AddDialog {
       texts.addTitle,
       [
         h("div", { class: "tabs", role: "tablist" }, this.tabs.type, this.tabs.topic),
-        h("div", { class: "search-box" }, icon("search"), this.search),
+        h("div", { class: "search-box" }, createIcon("search"), this.search),
         this.list,
         this.showAllLabel,
         h("label", { class: "form-field" }, h("span", {}, texts.displayName), this.nameField),
@@ -76,7 +76,7 @@ export class AddDialog {
   }
 
   private createTab(tab: Tab, label: string): HTMLButtonElement {
-    const tabButton = button(label, () => this.showTab(tab), "tab", label);
+    const tabButton = createButton(label, () => this.showTab(tab), "tab", label);
     tabButton.setAttribute("role", "tab");
     tabButton.addEventListener("keydown", (event) => {
       if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
@@ -128,8 +128,8 @@ export class AddDialog {
   private listTypes(query: string): HTMLElement[] {
     return this.offeredChoices.classes
       .map(({ cls, messages }) => ({ cls, about: describeDisplay(cls), messages }))
-      .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(query)))
-      .map(({ cls, about }) => this.createChoice(cls, null, shortNameOf(cls), about));
+      .filter(({ cls, about: summary, messages }) => [cls, summary, ...messages].some((text) => text.toLowerCase().includes(query)))
+      .map(({ cls, about: summary }) => this.createChoice(cls, null, shortNameOf(cls), summary));
   }
 
   private listTopics(query: string): HTMLElement[] {
@@ -152,13 +152,13 @@ export class AddDialog {
     });
   }
 
-  private createChoice(cls: string, topic: string | null, name: string, about: string): HTMLElement {
+  private createChoice(cls: string, topic: string | null, name: string, summary: string): HTMLElement {
     const element = h(
       "div",
       { class: "choice-row", role: "option", tabIndex: -1, aria: { selected: "false" } },
-      icon(iconNameOf(cls)),
+      createIcon(iconNameOf(cls)),
       h("strong", {}, name),
-      h("span", { class: "about" }, about),
+      h("span", { class: "about" }, summary),
     );
     const choice: Choice = { cls, topic, element };
     element.addEventListener("click", () => this.choose(choice));

@@ -102,8 +102,8 @@ export function formatStatusRow({ name, text }: StatusRow): string {
 /** Returns a description of a display, in a sentence or two. */
 export function describeDisplay(display: DisplayState, hasDrawing = isDrawn(display)): string {
   const name = display.cls.split("/").pop() ?? "";
-  const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
-  const details = hasDrawing ? (about ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
+  const summary = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
+  const details = hasDrawing ? (summary ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
   return `${display.cls}. ${details}`;
 }
 

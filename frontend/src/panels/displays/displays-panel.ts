@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon, LEVEL_ICONS } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon, LEVEL_ICONS } from "../../icons";
 import type { StatusRow } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
@@ -54,15 +54,15 @@ export class DisplaysPanel implements Panel {
   private createToolbar(): HTMLElement {
     const texts = strings.displays;
     const { commands } = this;
-    const createTool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
-      const toolButton = button(`${label} (${keys})`, run, "tool bare", icon(name));
+    const createTool = (label: string, name: Parameters<typeof createIcon>[0], keys: string, run: () => void): HTMLButtonElement => {
+      const toolButton = createButton(`${label} (${keys})`, run, "tool bare", createIcon(name));
       this.displayButtons.push(toolButton);
       return toolButton;
     };
     return h(
       "div",
       { class: "toolbar", role: "toolbar", aria: { label: strings.panels.displays } },
-      button(`${texts.addHint} (${formatShortcut(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), texts.add),
+      createButton(`${texts.addHint} (${formatShortcut(SHORTCUTS.add)})`, () => commands.add(), "tool", createIcon("add"), texts.add),
       createTool(texts.duplicate, "duplicate", formatShortcut(SHORTCUTS.duplicate), () => commands.duplicate()),
       createTool(texts.rename, "rename", formatShortcut(SHORTCUTS.rename), () => commands.rename()),
       createTool(texts.remove, "remove", formatShortcut(SHORTCUTS.remove), () => commands.remove()),
@@ -80,7 +80,7 @@ export class DisplaysPanel implements Panel {
       this.tree.refresh();
       event.stopPropagation();
     });
-    return h("div", { class: "search-box" }, icon("search"), this.filter);
+    return h("div", { class: "search-box" }, createIcon("search"), this.filter);
   }
 
   private listItems(): ReturnType<typeof filterItems> {
@@ -184,7 +184,7 @@ export class DisplaysPanel implements Panel {
     this.tree.runAfterRelease(() => {
       if (key !== this.explainedKey) return;
       this.helpBox.hidden = description === "" && statusRows.length === 0;
-      const problems = statusRows.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), formatStatusRow(row)));
+      const problems = statusRows.map((row) => h("p", { class: `trouble ${row.level}` }, createIcon(LEVEL_ICONS[row.level], `level-${row.level}`), formatStatusRow(row)));
       this.helpBox.replaceChildren(h("strong", {}, name), ...problems, h("p", {}, description));
     });
   }

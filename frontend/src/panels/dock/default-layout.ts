@@ -130,7 +130,9 @@ const MAX_NARROW_WIDTH_PX = 900;
 const MIN_ROOMY_WIDTH_PX = 1280;
 const MIN_WIDTH_SHARE = 0.7;
 
-/** The panels that open in front where panels share a group: the displays, and the panel that the page was opened for. */
+/**
+ * The panels that open in front where panels share a group: the displays, and the panel that the page was opened for.
+ */
 const FRONT_PANELS: readonly PanelId[] = ["displays", "world", "comparison", "lesson", "program"];
 
 /** A phone in landscape, where the status bar is hidden, too. */

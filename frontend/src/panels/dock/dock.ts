@@ -20,7 +20,8 @@ export class Dock {
   /** Emitted when a panel is opened, closed, moved or brought to the front. */
   readonly changed = new Signal();
   /**
-   * Emitted when the arrangement is replaced: titles must be set again, and panels that depend on data opened or closed.
+   * Emitted when the arrangement is replaced: titles must be set again, and panels that depend on data opened or
+   * closed.
    */
   readonly arrangementReplaced = new Signal();
   /** The panels that the file shows, for `reset`; null if it does not specify them. */

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { DiagnosticItem, EditedFile } from "../../protocol";
 import type { EditingState } from "../../state/editing/editing";
 import { strings } from "../../strings";
@@ -23,11 +23,11 @@ export class EditOutcome {
 
   constructor(private readonly editing: EditingState) {
     const texts = strings.editing;
-    this.applyButton = button(texts.applyHint, () => editing.apply(), "tool framed primary", texts.apply);
-    this.discardButton = button(texts.dropHint, () => editing.discardDraft(), "tool framed", texts.drop);
-    this.changeAllButton = button(texts.allHint, () => editing.changeAll(), "tool framed", texts.all);
-    this.undoButton = button(texts.undo, () => editing.undo(), "tool bare", icon("undo"));
-    this.redoButton = button(texts.redo, () => editing.redo(), "tool bare", icon("redo"));
+    this.applyButton = createButton(texts.applyHint, () => editing.apply(), "tool framed primary", texts.apply);
+    this.discardButton = createButton(texts.dropHint, () => editing.discardDraft(), "tool framed", texts.drop);
+    this.changeAllButton = createButton(texts.allHint, () => editing.changeAll(), "tool framed", texts.all);
+    this.undoButton = createButton(texts.undo, () => editing.undo(), "tool bare", createIcon("undo"));
+    this.redoButton = createButton(texts.redo, () => editing.redo(), "tool bare", createIcon("redo"));
     const bar = h("div", { class: "edit-bar" }, this.applyButton, this.discardButton, this.changeAllButton, h("span", { class: "spacer" }), this.undoButton, this.redoButton);
     this.element = h("div", { class: "edit-outcome" }, this.text, bar);
     editing.changed.on(() => this.show());

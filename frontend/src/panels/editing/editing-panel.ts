@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { EditablePart } from "../../protocol";
 import type { HandleFrame } from "../../state/editing/editing";
 import { ANGLE_STEPS_DEG } from "../../state/modeling/snapping";
@@ -13,7 +13,7 @@ import type { Panel } from "../panel";
 import { shortenPath } from "../place";
 import { EditOutcome } from "./edit-outcome";
 
-/** m */
+/** The lengths to choose from for the grid, m. */
 const LENGTH_STEPS_M = [0.001, 0.005, 0.01, 0.05, 0.1] as const;
 /** The steps of an arrow key: m or a component of an axis; rad where angles are shown in rad, and in degrees. */
 const [LENGTH_KEY_STEP, RADIAN_KEY_STEP, DEGREE_KEY_STEP] = [0.001, 0.01, Math.PI / 180];
@@ -88,7 +88,7 @@ export class EditingPanel implements Panel {
     const { editing } = this.session;
     const isChosen = part === editing.chosenPart;
     const kind = texts.kinds[part.part];
-    const row = button(texts.choose(kind, part.title), () => editing.choosePart(part), "editing-part", h("strong", {}, kind), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
+    const row = createButton(texts.choose(kind, part.title), () => editing.choosePart(part), "editing-part", h("strong", {}, kind), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
     row.setAttribute("aria-pressed", String(isChosen));
     row.classList.toggle("selected", isChosen);
     return row;
@@ -112,7 +112,7 @@ export class EditingPanel implements Panel {
     if (file !== "") {
       const show = (): void => this.session.description.placeRequested.emit({ file, line });
       const text = `${shortenPath(file)}:${line}`;
-      this.placeBox.append(button(`${file}:${line}`, show, "place", icon("file"), text), h("code", { title: written }, written === "" ? texts.notWritten : written));
+      this.placeBox.append(createButton(`${file}:${line}`, show, "place", createIcon("file"), text), h("code", { title: written }, written === "" ? texts.notWritten : written));
     }
   }
 
@@ -196,7 +196,7 @@ export class EditingPanel implements Panel {
     const { snapping } = editing;
     const lengthSelect = createSelect(strings.modeling.lengthStep, createStepOptions(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
     const angleSelect = createSelect(strings.modeling.angleStep, createStepOptions(ANGLE_STEPS_DEG, "°"), (value) => (snapping.degrees = Number(value)));
-    const snapButton = button(texts.snap, () => (snapping.isEnabled = !snapping.isEnabled), "tool bare", icon("magnet"));
+    const snapButton = createButton(texts.snap, () => (snapping.isEnabled = !snapping.isEnabled), "tool bare", createIcon("magnet"));
     const show = (): void => {
       snapButton.setAttribute("aria-pressed", String(snapping.isEnabled));
       snapButton.classList.toggle("active", snapping.isEnabled);
@@ -214,7 +214,7 @@ export class EditingPanel implements Panel {
     const { editing } = this.session;
     const texts = strings.editing;
     const createModeButton = (mode: "translate" | "rotate"): HTMLElement => {
-      const modeButton = button(texts.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", texts.modes[mode]);
+      const modeButton = createButton(texts.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", texts.modes[mode]);
       modeButton.setAttribute("aria-pressed", String(editing.mode === mode));
       return modeButton;
     };

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { JointControl } from "../../protocol";
 import type { AngleUnits } from "../../state/angle-unit";
 import { formatMimic } from "../../state/joint-table";
@@ -45,7 +45,7 @@ export class JointRow {
     // Screen readers get the whole name from the slider and the field.
     const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...nameParts);
     const mimicElement = isFollower
-      ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), this.relation)
+      ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, createIcon("link"), this.relation)
       : null;
     this.slider.type = "range";
     this.slider.min = String(joint.lower);

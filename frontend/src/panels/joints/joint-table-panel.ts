@@ -1,4 +1,4 @@
-import { button, coalesce, h } from "../../dom";
+import { createButton, coalesce, h } from "../../dom";
 import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
 import { formatJointCells, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
@@ -57,7 +57,7 @@ export class JointTablePanel implements Panel {
     const texts = strings.description.table;
     const isSorted = this.sorting?.column === column;
     const sign = isSorted ? (this.sorting?.isDescending ? " ▾" : " ▴") : "";
-    const cell = h("th", {}, button(texts.hints[column], () => this.sortBy(column), "", texts[column] + sign));
+    const cell = h("th", {}, createButton(texts.hints[column], () => this.sortBy(column), "", texts[column] + sign));
     cell.scope = "col";
     cell.setAttribute("aria-sort", isSorted ? (this.sorting?.isDescending ? "descending" : "ascending") : "none");
     return cell;

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { parseSrdf, formatSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -27,14 +27,14 @@ export class PoseBar {
     this.fileInput.accept = ".srdf,.xml,.xacro";
     this.fileInput.hidden = true;
     this.fileInput.addEventListener("change", () => void this.importFile());
-    const moreButton = button(texts.more, () => this.openMoreMenu(moreButton), "tool bare", icon("more"));
+    const moreButton = createButton(texts.more, () => this.openMoreMenu(moreButton), "tool bare", createIcon("more"));
     moreButton.setAttribute("aria-haspopup", "menu");
     const nameRow = h(
       "div",
       { class: "bar-row" },
       h("span", { class: "bar-label", title: texts.kept }, texts.label),
       this.nameField,
-      button(texts.saveHint, () => this.save(), "tool", texts.save),
+      createButton(texts.saveHint, () => this.save(), "tool", texts.save),
       moreButton,
     );
     this.notice.hidden = true;
@@ -60,8 +60,8 @@ export class PoseBar {
     return h(
       "span",
       { class: "chip", data: { pose: pose.name } },
-      button(texts.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
-      button(texts.remove(pose.name), () => this.session.poses.remove(this.robotName, pose.name), "chip-remove", icon("close")),
+      createButton(texts.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
+      createButton(texts.remove(pose.name), () => this.session.poses.remove(this.robotName, pose.name), "chip-remove", createIcon("close")),
     );
   }
 

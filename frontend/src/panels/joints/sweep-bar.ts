@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { JointsState } from "../../state/joints";
 import { Sweep, type SweepOrder } from "../../state/sweep";
 import { strings } from "../../strings";
@@ -28,7 +28,7 @@ export class SweepBar {
     fillSelect(this.speedSelect, texts.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
     this.speedSelect.value = "1";
     this.orderSelect.addEventListener("change", () => this.sweep && this.startSweep());
-    this.startButton = button(texts.start, () => (this.sweep ? this.stopSweep() : this.startSweep()), "tool bare", icon("play"));
+    this.startButton = createButton(texts.start, () => (this.sweep ? this.stopSweep() : this.startSweep()), "tool bare", createIcon("play"));
     const row = h(
       "div",
       { class: "bar-row" },
@@ -70,7 +70,7 @@ export class SweepBar {
   private showState(): void {
     const texts = strings.description.sweep;
     const isRunning = this.sweep !== null;
-    this.startButton.replaceChildren(icon(isRunning ? "stop" : "play"));
+    this.startButton.replaceChildren(createIcon(isRunning ? "stop" : "play"));
     this.startButton.title = isRunning ? texts.stop : texts.start;
     this.startButton.setAttribute("aria-label", this.startButton.title);
     this.startButton.classList.toggle("on", isRunning);
@@ -83,7 +83,7 @@ function createDragSwitch(joints: JointsState): HTMLElement {
     joints.dragsWithoutAlt = !joints.dragsWithoutAlt;
     show();
   };
-  const element = button(strings.description.handsOn, toggle, "tool bare", icon("hand"));
+  const element = createButton(strings.description.handsOn, toggle, "tool bare", createIcon("hand"));
   const show = (): void => {
     element.classList.toggle("on", joints.dragsWithoutAlt);
     element.setAttribute("aria-pressed", String(joints.dragsWithoutAlt));

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { StepCheck } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { languageTag, strings } from "../../strings";
@@ -23,9 +23,9 @@ export class ChecksPanel implements Panel {
 
   constructor(private readonly state: CourseState) {
     const texts = strings.learning;
-    const checkButton = button(`${texts.checkHint} (${formatShortcut(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
-    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.moveBy(1), "tool framed primary", texts.nextStep);
-    this.catchUpOffer = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.requestCatchUp(), "tool framed", texts.catchUp));
+    const checkButton = createButton(`${texts.checkHint} (${formatShortcut(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
+    this.nextButton = createButton(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.moveBy(1), "tool framed primary", texts.nextStep);
+    this.catchUpOffer = h("div", { class: "checks-offer" }, this.offerText, createButton(texts.catchUpHint, () => state.requestCatchUp(), "tool framed", texts.catchUp));
     this.content = h(
       "div",
       { class: "checks" },
@@ -65,7 +65,7 @@ export class ChecksPanel implements Panel {
 }
 
 function createRow({ title, is_passed: isPassed, message }: StepCheck): HTMLElement {
-  const statusIcon = isPassed ? icon("check", "level-ok") : icon("close", "level-error");
+  const statusIcon = isPassed ? createIcon("check", "level-ok") : createIcon("close", "level-error");
   const stateText = h("span", { class: "hidden-text" }, isPassed ? strings.learning.passed : strings.learning.missing);
   const text = message === null ? null : h("p", { class: "check-message" }, localize(message));
   return h("li", { class: "step-check" }, statusIcon, h("div", {}, stateText, localize(title), text));

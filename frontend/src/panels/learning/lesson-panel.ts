@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
@@ -34,11 +34,11 @@ export class LessonPanel implements Panel {
   constructor(private readonly state: CourseState) {
     const texts = strings.learning;
     this.outline = new Outline(state, () => this.showOutline(false));
-    this.outlineToggle = button(texts.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", icon("tree"), texts.outline);
-    this.backButton = button(`${texts.backHint} (${formatShortcut(SHORTCUTS.previousStep)})`, () => state.moveBy(-1), "tool framed", texts.back);
-    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.moveBy(1), "tool framed", texts.next);
-    this.hintButton = button(texts.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), texts.hint);
-    this.solutionButton = button(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
+    this.outlineToggle = createButton(texts.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", createIcon("tree"), texts.outline);
+    this.backButton = createButton(`${texts.backHint} (${formatShortcut(SHORTCUTS.previousStep)})`, () => state.moveBy(-1), "tool framed", texts.back);
+    this.nextButton = createButton(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.moveBy(1), "tool framed", texts.next);
+    this.hintButton = createButton(texts.hintHint, () => state.takeHint(), "tool framed", createIcon("bulb"), texts.hint);
+    this.solutionButton = createButton(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
     this.answerField.setAttribute("aria-label", texts.answer);
     this.answerField.addEventListener("keydown", (event) => {
       event.stopPropagation();
@@ -111,7 +111,7 @@ export class LessonPanel implements Panel {
   private createFileRow(files: readonly string[]): HTMLElement[] {
     if (files.length === 0) return [];
     const texts = strings.learning;
-    const buttons = files.map((path) => button(texts.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", icon("file"), fileNameOf(path)));
+    const buttons = files.map((path) => createButton(texts.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", createIcon("file"), fileNameOf(path)));
     return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.files), ...buttons)];
   }
 
@@ -119,7 +119,7 @@ export class LessonPanel implements Panel {
     if (unit === null) return [];
     const texts = strings.learning;
     this.answerField.value = answer ?? "";
-    const sendButton = button(texts.answerHint, () => this.sendAnswer(), "tool framed primary", texts.sendAnswer);
+    const sendButton = createButton(texts.answerHint, () => this.sendAnswer(), "tool framed primary", texts.sendAnswer);
     return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.answer), this.answerField, unit === "1" ? null : h("span", {}, unit), sendButton)];
   }
 

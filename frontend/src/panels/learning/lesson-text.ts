@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { strings } from "../../strings";
 import { copyText } from "../../widgets/copy-text";
 import { sanitizeHtml } from "../source-editor/safe-html";
@@ -7,7 +7,10 @@ import { sanitizeHtml } from "../source-editor/safe-html";
 /** The class of blocks that show output. */
 const OUTPUT_CLASS = "language-text";
 
-/** Returns the text of a lesson as an element; code blocks get a button that copies them, unless they show output, and tables scroll. */
+/**
+ * Returns the text of a lesson as an element; code blocks get a button that copies them, unless they show output, and
+ * tables scroll.
+ */
 export function createLessonText(html: string, className: string): HTMLElement {
   const element = h("div", { class: className });
   element.innerHTML = sanitizeHtml(html, { allowsImages: true });
@@ -16,7 +19,7 @@ export function createLessonText(html: string, className: string): HTMLElement {
     code.parentElement?.replaceWith(wrapper);
     wrapper.append(h("pre", { tabIndex: 0 }, code));
     if (code.classList.contains(OUTPUT_CLASS)) continue;
-    wrapper.append(button(strings.learning.copyHint, () => void copyText(code.textContent), "tool bare lesson-copy", icon("copy")));
+    wrapper.append(createButton(strings.learning.copyHint, () => void copyText(code.textContent), "tool bare lesson-copy", createIcon("copy")));
   }
   for (const code of element.querySelectorAll(":not(pre) > code")) addBreaksAfterSlashes(code);
   for (const table of element.querySelectorAll("table")) {

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { CourseStepItem } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
@@ -35,9 +35,9 @@ export class Outline {
       this.onStepOpened();
     };
     const texts = strings.learning;
-    const statusIcon = isPassed ? icon("check", "level-ok") : isTakenOver ? icon("download") : h("span", { class: "outline-mark" });
+    const statusIcon = isPassed ? createIcon("check", "level-ok") : isTakenOver ? createIcon("download") : h("span", { class: "outline-mark" });
     const title = isPassed ? texts.passedStep(name) : isTakenOver ? texts.takenOverStep(name) : name;
-    const row = button(title, open, "outline-step", statusIcon, name);
+    const row = createButton(title, open, "outline-step", statusIcon, name);
     if (address === this.state.step?.address) row.setAttribute("aria-current", "step");
     return row;
   }

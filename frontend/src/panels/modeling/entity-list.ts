@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createIcon, type IconName } from "../../icons";
 import type { WorldEntity } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
 import type { Shape } from "../../state/modeling/shapes";
@@ -61,7 +61,7 @@ export class EntityList {
     const row = h(
       "div",
       { class: isSelected ? "entity-row selected" : "entity-row", role: "option", title: name, aria: { selected: String(isSelected) } },
-      icon(entity ? chooseIcon(entity) : "unknown"),
+      createIcon(entity ? chooseIcon(entity) : "unknown"),
       h("span", {}, name),
     );
     row.id = `entity-${index}`;

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { ModelChoice } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
 import { strings } from "../../strings";
@@ -23,7 +23,7 @@ export class ModelDialog {
     for (const element of [this.search, this.list]) element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.dialog = new Dialog(
       texts.models,
-      [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
+      [h("div", { class: "search-box" }, createIcon("search"), this.search), this.list],
       [{ label: strings.shell.cancel }, { label: texts.choose, isPrimary: true, run: () => this.placeChosenModel() }],
       "add-dialog",
     );
@@ -53,7 +53,7 @@ export class ModelDialog {
 
   private createRow(model: ModelChoice): HTMLElement {
     const { name, address } = model;
-    const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
+    const parts = [createIcon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
     const row = h("div", { class: "choice-row", role: "option", tabIndex: -1, onClick: () => this.chooseModel(model) }, ...parts);
     row.addEventListener("dblclick", () => {
       if (this.placeChosenModel()) this.dialog.close();

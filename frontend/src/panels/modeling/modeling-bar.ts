@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon, type IconName } from "../../icons";
 import type { GizmoMode, Modeling, Placing } from "../../state/modeling/modeling";
 import type { NewKind } from "../../state/modeling/shapes";
 import { strings } from "../../strings";
@@ -99,7 +99,7 @@ export class ModelingBar {
 }
 
 function createTool(label: string, name: IconName, run: () => void): HTMLButtonElement {
-  return button(label, run, "scene-tool small", icon(name));
+  return createButton(label, run, "scene-tool small", createIcon(name));
 }
 
 function setPressed(element: HTMLButtonElement, isPressed: boolean): void {

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon, type IconName } from "../../icons";
 import type { AngleUnits } from "../../state/angle-unit";
 import type { Modeling } from "../../state/modeling/modeling";
 import { ANGLE_STEPS_DEG, LENGTH_STEPS_M } from "../../state/modeling/snapping";
@@ -32,7 +32,7 @@ export class WorldPanel implements Panel {
     commands: WorldCommands,
   ) {
     const texts = strings.modeling;
-    const startButton = button(texts.startEditing, () => modeling.setActive(true), "tool framed", texts.start);
+    const startButton = createButton(texts.startEditing, () => modeling.setActive(true), "tool framed", texts.start);
     this.inactiveView = h("div", { class: "world-off" }, h("p", { class: "hint" }, texts.inactiveHint), startButton);
     const hasSelection = (): boolean => modeling.selectedNames.length > 0;
     this.actions = [
@@ -43,7 +43,7 @@ export class WorldPanel implements Panel {
     ];
     const toolbar = h("div", { class: "toolbar", role: "toolbar", aria: { label: texts.panel } }, ...this.actions.map(([actionButton]) => actionButton));
     const saveAsButton = createAction(texts.saveAs, WORLD_KEYS.saveAs, "download", () => commands.saveAs());
-    const header = h("div", { class: "world-head" }, icon("file"), this.fileLabel, this.unsavedMark, h("span", { class: "spacer" }), saveAsButton);
+    const header = h("div", { class: "world-head" }, createIcon("file"), this.fileLabel, this.unsavedMark, h("span", { class: "spacer" }), saveAsButton);
     const tree = new TreeView(texts.properties, () => createEntityItems(modeling, angles), () => []);
     this.activeView = h("div", { class: "world-work" }, header, toolbar, this.emptyNote, new EntityList(modeling).element, tree.element, this.createGridControls(angles));
     this.element = h("div", { class: "panel world-panel" }, this.inactiveView, this.activeView);
@@ -76,10 +76,10 @@ export class WorldPanel implements Panel {
     };
     snapping.changed.on(show);
     show();
-    return h("div", { class: "world-grid" }, icon("magnet"), lengthSelect, angleSelect, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
+    return h("div", { class: "world-grid" }, createIcon("magnet"), lengthSelect, angleSelect, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
   }
 }
 
 function createAction(label: string, keys: Shortcut, name: IconName, run: () => void): HTMLButtonElement {
-  return button(`${label} (${formatShortcut(keys)})`, run, "tool bare", icon(name));
+  return createButton(`${label} (${formatShortcut(keys)})`, run, "tool bare", createIcon(name));
 }

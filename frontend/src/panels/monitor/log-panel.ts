@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { LogLine } from "../../protocol";
 import { formatClock } from "../../state/monitor/figure-text";
 import { LEVELS, levelOf, formatLine, type LogState } from "../../state/monitor/log";
@@ -31,9 +31,9 @@ export class LogPanel implements Panel {
     this.list.element.setAttribute("role", "region");
     this.list.element.setAttribute("aria-label", texts.list);
     this.list.element.addEventListener("keydown", (event) => this.onKeyDown(event));
-    this.pauseButton = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
-    this.newestButton = button(texts.newestHint, () => this.list.follow(), "tool", icon("follow"), texts.newest);
-    const copyButton = button(texts.copyHint, () => this.copy(copyButton), "tool", icon("copy"), texts.copy);
+    this.pauseButton = createButton(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
+    this.newestButton = createButton(texts.newestHint, () => this.list.follow(), "tool", createIcon("follow"), texts.newest);
+    const copyButton = createButton(texts.copyHint, () => this.copy(copyButton), "tool", createIcon("copy"), texts.copy);
     this.nodeSelect.addEventListener("change", () => state.setNode(this.nodeSelect.value));
     const filters = h(
       "div",
@@ -48,7 +48,7 @@ export class LogPanel implements Panel {
       "div",
       { class: "toolbar" },
       this.pauseButton,
-      button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      createButton(texts.clearHint, () => state.clear(), "tool", createIcon("clear"), strings.monitor.clear),
       copyButton,
       h("span", { class: "spacer" }),
       this.newestButton,
@@ -74,7 +74,7 @@ export class LogPanel implements Panel {
     const group = h("div", { class: "segmented", role: "group", aria: { label: strings.monitor.log.level } });
     for (const level of LEVELS) {
       const name = strings.monitor.log.levels[level];
-      const toggle = button(
+      const toggle = createButton(
         name,
         () => {
           this.state.setLevel(level, !this.state.levels.has(level));
@@ -100,7 +100,7 @@ export class LogPanel implements Panel {
     this.list.show(shownLines);
     const countText = texts.shown(shownLines.length, lines.length);
     this.countNote.textContent = missedCount > 0 ? `${countText}, ${texts.missed(missedCount)}` : countText;
-    this.pauseButton.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? strings.monitor.resume : strings.monitor.pause);
+    this.pauseButton.replaceChildren(createIcon(isPaused ? "play" : "pause"), isPaused ? strings.monitor.resume : strings.monitor.pause);
     this.pauseButton.classList.toggle("on", isPaused);
     const { nodes } = this.state;
     if (nodes.join("\n") === this.shownNodesKey) return;

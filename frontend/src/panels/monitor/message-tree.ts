@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { MessageField } from "../../protocol";
 import { strings } from "../../strings";
 
@@ -55,7 +55,7 @@ export class MessageTree {
     if (existing && (existing.toggle !== null) === hasChildren) return existing;
     const value = h("span", { class: "message-value" });
     const children = h("div", { class: "message-children" });
-    const toggle = hasChildren ? button(field.name, () => this.toggle(path), "expander", icon("chevron")) : null;
+    const toggle = hasChildren ? createButton(field.name, () => this.toggle(path), "expander", createIcon("chevron")) : null;
     const isNumber = !hasChildren && isNumeric(field);
     const head = h(
       "div",
@@ -64,7 +64,7 @@ export class MessageTree {
       h("span", { class: "message-name" }, field.name),
       value,
       h("span", { class: "note kind" }, field.kind),
-      isNumber ? button(strings.monitor.topics.plot, () => this.onPlotField(path), "tool bare", icon("plot")) : null,
+      isNumber ? createButton(strings.monitor.topics.plot, () => this.onPlotField(path), "tool bare", createIcon("plot")) : null,
     );
     const omittedNote = h("div", { class: "note" });
     const row = { element: h("div", {}, head, children), value, children, toggle, omittedNote };

@@ -1,13 +1,13 @@
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import type { NavigationCommand } from "../../protocol";
 import type { NavigationState } from "../../state/monitor/navigation";
 import { strings } from "../../strings";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
-type RowName = "navigation" | "localization" | "goal" | "eta" | "distance" | "taken" | "recoveries";
+type RowName = "navigation" | "localization" | "goal" | "eta" | "distance" | "elapsed" | "recoveries";
 
-const ROW_NAMES: readonly RowName[] = ["navigation", "localization", "goal", "eta", "distance", "taken", "recoveries"];
+const ROW_NAMES: readonly RowName[] = ["navigation", "localization", "goal", "eta", "distance", "elapsed", "recoveries"];
 
 /** nav2's panel "Navigation 2": states of the nodes, progress of the goal, and commands. */
 export class NavigationPanel implements Panel {
@@ -27,11 +27,11 @@ export class NavigationPanel implements Panel {
       goal: createValue(),
       eta: createValue(),
       distance: createValue(),
-      taken: createValue(),
+      elapsed: createValue(),
       recoveries: createValue(),
     };
     const createCommandButton = (command: NavigationCommand): HTMLButtonElement =>
-      button(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
+      createButton(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
     this.buttons = {
       startup: createCommandButton("startup"),
       pause: createCommandButton("pause"),
@@ -70,7 +70,7 @@ export class NavigationPanel implements Panel {
     const goal = lastState?.goal ?? "none";
     setRow("goal", texts.goals[goal], goal);
     setRow("eta", formatSeconds(lastState?.eta));
-    setRow("taken", formatSeconds(lastState?.elapsed));
+    setRow("elapsed", formatSeconds(lastState?.elapsed));
     setRow("distance", lastState?.distance === null || lastState?.distance === undefined ? texts.none : `${lastState.distance.toFixed(2)} m`);
     setRow("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? texts.none : String(lastState.recoveries));
     this.problem.textContent = lastState?.problem ?? "";

@@ -93,8 +93,8 @@ export class NodeGraphDrawing {
   private findBusiestBox(): PlacedBox | undefined {
     const degrees = new Map<string, number>();
     for (const id of this.graph.edges.flatMap(({ source, target }) => [source, target])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
-    const [busiest] = [...degrees].sort(([, a], [, b]) => b - a);
-    return this.boxes.get(busiest?.[0] ?? "");
+    const [busiestVertex] = [...degrees].sort(([, a], [, b]) => b - a);
+    return this.boxes.get(busiestVertex?.[0] ?? "");
   }
 
   private drawBox(box: PlacedBox, vertex: GraphVertex | undefined): SVGElement {

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { buildGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
 import type { NodeGraphState } from "../../state/monitor/node-graph";
 import { strings } from "../../strings";
@@ -55,7 +55,7 @@ export class NodeGraphPanel implements Panel {
       createOptionBox("showsDebug", texts.debug, texts.debugHint),
       createOptionBox("groupsNamespaces", texts.groups, texts.groupsHint),
       h("span", { class: "spacer" }),
-      button(texts.fitHint, () => this.drawing.fit(), "tool", icon("center"), texts.fit),
+      createButton(texts.fitHint, () => this.drawing.fit(), "tool", createIcon("center"), texts.fit),
     );
     const drawingBox = h("div", { class: "graph-stage" }, this.emptyNote);
     drawingBox.append(this.drawing.element);
@@ -110,7 +110,7 @@ export class NodeGraphPanel implements Panel {
   }
 
   private showInDetails(...children: readonly (HTMLElement | null)[]): void {
-    const closeGroupsButton = button(
+    const closeGroupsButton = createButton(
       strings.monitor.graph.closeGroups,
       () => {
         this.options.openGroups.clear();

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { ParametersState } from "../../state/monitor/parameters";
 import { strings } from "../../strings";
 import { createTextField } from "../../widgets/controls";
@@ -23,7 +23,7 @@ export class ParametersPanel implements Panel {
 
   constructor(private readonly state: ParametersState) {
     const texts = strings.monitor.parameters;
-    this.dumpButton = button(texts.dumpHint, () => state.dump(), "tool", icon("download"), texts.dump);
+    this.dumpButton = createButton(texts.dumpHint, () => state.dump(), "tool", createIcon("download"), texts.dump);
     const filter = createTextField(strings.monitor.filter, (text) => {
       this.filter = text.trim().toLowerCase();
       this.show();

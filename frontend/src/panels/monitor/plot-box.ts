@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { formatField, formatValue } from "../../state/monitor/field-text";
 import { formatCsv } from "../../state/monitor/plot-table";
 import type { Plot, PlotsState, Series } from "../../state/monitor/plots";
@@ -33,9 +33,9 @@ export class PlotBox {
       this.legend,
       h("span", { class: "spacer" }),
       this.rangeBox,
-      button(texts.addSeries, () => this.openPicker(), "tool bare", icon("plus")),
-      button(texts.csvHintOf, () => this.saveCsv(), "tool bare", icon("download")),
-      button(texts.removePlot, () => state.removePlot(plot), "tool bare", icon("close")),
+      createButton(texts.addSeries, () => this.openPicker(), "tool bare", createIcon("plus")),
+      createButton(texts.csvHintOf, () => this.saveCsv(), "tool bare", createIcon("download")),
+      createButton(texts.removePlot, () => state.removePlot(plot), "tool bare", createIcon("close")),
     );
     const ariaLabel = { label: texts.diagram };
     this.element = h("section", { class: "plot", aria: ariaLabel }, head, this.pickerBox, this.chart.element);
@@ -55,7 +55,7 @@ export class PlotBox {
       const name = formatField(series);
       const colorMark = h("span", { class: "plot-mark" });
       colorMark.style.background = seriesColorOf(index);
-      const removeButton = button(texts.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", icon("close"));
+      const removeButton = createButton(texts.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", createIcon("close"));
       const hint = series.error ?? name;
       return h("span", { class: series.error === null ? "chip" : "chip wrong", title: hint }, colorMark, name, value, removeButton);
     });
@@ -106,7 +106,7 @@ export class PlotBox {
   private showRange(): void {
     const texts = strings.monitor.plot;
     const { range } = this.plot;
-    const toggle = button(
+    const toggle = createButton(
       texts.rangeHint,
       () => this.state.setRange(this.plot, range ? null : this.readShownRange()),
       range ? "tool on" : "tool",

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Plot, PlotsState } from "../../state/monitor/plots";
 import type { TimeSource } from "../../state/monitor/series-buffer";
 import type { TopicsState } from "../../state/monitor/topics";
@@ -26,7 +26,7 @@ export class PlotPanel implements Panel {
     private readonly topics: TopicsState,
   ) {
     const texts = strings.monitor.plot;
-    this.pauseButton = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
+    this.pauseButton = createButton(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
     const windowOptions = WINDOW_LENGTHS_S.map((count) => [String(count), texts.seconds(count)] as const);
     this.windowSelect = createSelect(texts.windowHint, windowOptions, (count) => state.setSeconds(Number(count)));
     const sourceOptions: [TimeSource, string][] = [
@@ -37,9 +37,9 @@ export class PlotPanel implements Panel {
     const toolbar = h(
       "div",
       { class: "toolbar" },
-      button(texts.addPlotHint, () => this.addPlot(), "tool", icon("plus"), texts.addPlot),
+      createButton(texts.addPlotHint, () => this.addPlot(), "tool", createIcon("plus"), texts.addPlot),
       this.pauseButton,
-      button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      createButton(texts.clearHint, () => state.clear(), "tool", createIcon("clear"), strings.monitor.clear),
       h("span", { class: "spacer" }),
       h("label", { class: "named" }, texts.window, this.windowSelect),
       h("label", { class: "named" }, texts.source, this.sourceSelect),
@@ -85,7 +85,7 @@ export class PlotPanel implements Panel {
       this.list.append(box.element);
     }
     const texts = strings.monitor;
-    this.pauseButton.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? texts.resume : texts.pause);
+    this.pauseButton.replaceChildren(createIcon(isPaused ? "play" : "pause"), isPaused ? texts.resume : texts.pause);
     this.pauseButton.title = isPaused ? texts.plot.resumeHint : texts.plot.pauseHint;
     this.pauseButton.classList.toggle("on", isPaused);
     this.windowSelect.value = String(this.state.seconds);

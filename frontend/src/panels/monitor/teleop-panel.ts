@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { TwistKind } from "../../protocol";
 import { formatValue } from "../../state/monitor/field-text";
 import type { TeleopState } from "../../state/monitor/teleop";
@@ -42,7 +42,7 @@ export class TeleopPanel implements Panel {
       linear: createNumberField(texts.linearHint, settings.linear, [0, MAX_VELOCITY], (linear) => state.configure({ linear })),
       angular: createNumberField(texts.angularHint, settings.angular, [0, MAX_VELOCITY], (angular) => state.configure({ angular })),
     };
-    const stop = button(texts.stopHint, () => this.pad.release(), "tool stop", icon("stop"), texts.stop);
+    const stop = createButton(texts.stopHint, () => this.pad.release(), "tool stop", createIcon("stop"), texts.stop);
     const focus = h("div", { class: "note teleop-focus" }, this.focusTexts.active, this.focusTexts.inactive);
     const sideColumn = h("div", { class: "teleop-side" }, this.velocity, stop, focus);
     this.element = h(

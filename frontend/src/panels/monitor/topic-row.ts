@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
 import { formatBandwidth, formatClock, formatRate } from "../../state/monitor/figure-text";
 import { strings } from "../../strings";
@@ -32,7 +32,7 @@ export class TopicLine {
     this.measureBox.type = "checkbox";
     this.measureBox.setAttribute("aria-label", texts.measure(name));
     this.measureBox.addEventListener("change", () => events.onMeasured(name, this.measureBox.checked));
-    this.expander = button(texts.open(name), () => events.onOpened(name, this.messageRow.hidden === true), "expander", icon("chevron"));
+    this.expander = createButton(texts.open(name), () => events.onOpened(name, this.messageRow.hidden === true), "expander", createIcon("chevron"));
     this.tree = new MessageTree((path) => events.onPlotted(name, path));
     this.cells = {
       type: h("td", { class: "note" }),
@@ -41,7 +41,7 @@ export class TopicLine {
       rate: h("td", { class: "numeric" }),
       bandwidth: h("td", { class: "numeric" }),
     };
-    const nameButton = button(texts.show, () => events.onShown(name), "text-link", name);
+    const nameButton = createButton(texts.show, () => events.onShown(name), "text-link", name);
     const title = h("span", { class: "topic-title" }, this.measureBox, this.expander, nameButton);
     this.mainRow = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
     const cell = h("td", {}, this.receivedNote, this.tree.element);

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { InspectedProperties } from "../../state/inspect";
 import { formatGeneral } from "../../state/number-text";
 import type { Session } from "../../state/session";
@@ -29,7 +29,7 @@ export class InspectMenu {
     private readonly onResized: () => void,
   ) {
     const texts = strings.description.inspect;
-    this.openButton = button(texts.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), texts.button);
+    this.openButton = createButton(texts.hint, () => this.toggle(this.card.hidden !== false), "tool", createIcon("inspect"), texts.button);
     this.card.append(...PROPERTIES.map((choice) => this.createPropertyBox(choice)), this.createDepthRow(), this.createScaleRow(), this.facts);
     this.element.append(this.openButton, this.card);
     const { inspect, description, robotChanged } = session;
@@ -137,7 +137,7 @@ export class InspectMenu {
     if (hasNoInertia) return [h("div", { class: "missing" }, texts.noInertials)];
     const rows = findings.map(({ link, code, message, hint }) => {
       const linkElement = { display: model.display, kind: "link" as const, name: link };
-      const row = button(hint || message, () => this.session.focus.select(linkElement), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));
+      const row = createButton(hint || message, () => this.session.focus.select(linkElement), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));
       return h("li", { data: { link } }, row);
     });
     return [

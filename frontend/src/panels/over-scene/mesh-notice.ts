@@ -6,7 +6,7 @@ import { strings } from "../../strings";
 /** The maximum number of files listed; the others are counted. */
 const MAX_LISTED_FILES = 4;
 
-/** The notice over the scene while mesh files take longer than a moment: the files and their progress. */
+/** The notice over the scene while mesh files take noticeably long to load: the files and their progress. */
 export class MeshNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "meshes" } });
 

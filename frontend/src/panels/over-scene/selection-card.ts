@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { LinkScene, LinkProvenance } from "../../protocol";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -39,10 +39,10 @@ export class SelectionCard {
     if (wasHidden) this.isFolded = this.column.isOverRobots;
     const { link } = selectedLink;
     const texts = strings.selection;
-    const clearButton = button(texts.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
-    const editButton = this.startEditing && button(strings.editing.editHint, this.startEditing, "tool bare edit-link", icon("handles"));
+    const clearButton = createButton(texts.clear, () => this.session.selection.select(null), "tool bare", createIcon("close"));
+    const editButton = this.startEditing && createButton(strings.editing.editHint, this.startEditing, "tool bare edit-link", createIcon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), editButton, this.createFoldButton(), clearButton),
+      h("header", {}, createIcon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), editButton, this.createFoldButton(), clearButton),
       ...createDetails(link),
       createPlace(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...createTrail(link),
@@ -57,7 +57,7 @@ export class SelectionCard {
       show(!this.isFolded);
       this.column.onCardToggled();
     };
-    const foldButton: HTMLButtonElement = button(texts.fold, toggle, "tool bare fold", icon("chevron"));
+    const foldButton: HTMLButtonElement = createButton(texts.fold, toggle, "tool bare fold", createIcon("chevron"));
     const show = (isFolded: boolean): void => {
       this.isFolded = isFolded;
       this.element.classList.toggle("folded", isFolded);
@@ -90,7 +90,7 @@ function createPlace(link: LinkScene, showSource: (file: string, line: number) =
   const place = link.place;
   if (!place) return h("p", { class: "hint" }, texts.noPlace);
   const fullPlace = formatPlace(place.file, place.line, place.column);
-  const copyButton = button(
+  const copyButton = createButton(
     texts.copy,
     () => {
       void navigator.clipboard.writeText(fullPlace).then(() => {
@@ -99,9 +99,9 @@ function createPlace(link: LinkScene, showSource: (file: string, line: number) =
       });
     },
     "tool bare",
-    icon("copy"),
+    createIcon("copy"),
   );
-  const placeButton = button(fullPlace, () => showSource(place.file, place.line), "place", icon("file"), formatPlace(shortenPath(place.file), place.line, place.column));
+  const placeButton = createButton(fullPlace, () => showSource(place.file, place.line), "place", createIcon("file"), formatPlace(shortenPath(place.file), place.line, place.column));
   return h("div", { class: "card-place" }, placeButton, copyButton);
 }
 

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Modeling } from "../../state/modeling/modeling";
 import type { SimulationState } from "../../state/simulation";
 import { strings } from "../../strings";
@@ -27,11 +27,11 @@ export class SimulationBar {
     commands: WorldCommands,
   ) {
     const texts = strings.simulation;
-    this.playButton = button(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", icon("pause"));
-    this.stepButton = button(texts.step, () => simulation.sendControl("step"), "scene-tool small", icon("step"));
-    const resetButton = button(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", icon("reset"));
-    const addButton = button(texts.spawn, () => this.openSpawnDialog(simulation.findFreePosition()), "scene-tool small", icon("plus"));
-    this.modelButton = button(strings.modeling.startEditing, () => modeling.setActive(!modeling.isActive), "scene-tool small", icon("build"));
+    this.playButton = createButton(texts.pause, () => simulation.sendControl(simulation.isPaused ? "play" : "pause"), "scene-tool small", createIcon("pause"));
+    this.stepButton = createButton(texts.step, () => simulation.sendControl("step"), "scene-tool small", createIcon("step"));
+    const resetButton = createButton(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", createIcon("reset"));
+    const addButton = createButton(texts.spawn, () => this.openSpawnDialog(simulation.findFreePosition()), "scene-tool small", createIcon("plus"));
+    this.modelButton = createButton(strings.modeling.startEditing, () => modeling.setActive(!modeling.isActive), "scene-tool small", createIcon("build"));
     const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factorText, this.timeText);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
@@ -49,7 +49,7 @@ export class SimulationBar {
     if (this.playButton.title !== label) {
       this.playButton.title = label;
       this.playButton.setAttribute("aria-label", label);
-      this.playButton.replaceChildren(icon(isPaused ? "play" : "pause"));
+      this.playButton.replaceChildren(createIcon(isPaused ? "play" : "pause"));
     }
     this.stepButton.disabled = !isPaused;
     this.showModeling();

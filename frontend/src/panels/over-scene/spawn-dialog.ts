@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { ModelChoice } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
 import type { SimulationState } from "../../state/simulation";
@@ -84,7 +84,7 @@ export class SpawnDialog {
       this.onLocationChanged();
       this.list.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
     };
-    const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
+    const parts = [createIcon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
     const row = h("div", { class: "choice-row", role: "option", tabIndex: 0, aria: { selected: String(isChosen) }, onClick: choose }, ...parts);
     row.addEventListener("keydown", (event) => {
       if (event.key === "Enter" || event.key === " ") choose();

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { TOOLS } from "../../scene/tools/catalog";
 import type { ToolState, ToolsState } from "../../state/tools";
 import { strings } from "../../strings";
@@ -37,23 +37,23 @@ export class Toolbar {
     const texts = strings.tools;
     this.buttons.clear();
     for (const tool of tools.tools) this.buttons.set(tool, this.createToolButton(tool));
-    const addButton: HTMLButtonElement = button(
+    const addButton: HTMLButtonElement = createButton(
       texts.add,
       () => openMenu(addButton, tools.classes.map((tool) => ({ label: translateToolName(tool), run: () => tools.add(tool.cls) }))),
       "scene-tool small",
-      icon("plus"),
+      createIcon("plus"),
     );
-    const removeButton: HTMLButtonElement = button(
+    const removeButton: HTMLButtonElement = createButton(
       texts.remove,
       () => openMenu(removeButton, tools.tools.map((tool) => ({ label: translateToolName(tool), run: () => tools.remove(tool.id) }))),
       "scene-tool small",
-      icon("minus"),
+      createIcon("minus"),
     );
     removeButton.disabled = tools.tools.length === 0;
     for (const menuButton of [addButton, removeButton]) menuButton.setAttribute("aria-haspopup", "menu");
-    const fitButton = button(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, texts.fit));
+    const fitButton = createButton(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", createIcon("fit"), h("span", { class: "tool-name" }, texts.fit));
     fitButton.setAttribute("aria-label", texts.fit);
-    const helpButton = button(texts.help, this.showKeys, "scene-tool small", icon("keys"));
+    const helpButton = createButton(texts.help, this.showKeys, "scene-tool small", createIcon("keys"));
     this.element.replaceChildren(...this.buttons.values(), addButton, removeButton, h("span", { class: "spacer" }), fitButton, this.talkButton, helpButton);
     this.markCurrent();
   }
@@ -63,8 +63,8 @@ export class Toolbar {
     const name = translateToolName(tool);
     const texts = strings.tools;
     const label = tool.isSupported && entry ? texts.withKey(name, entry.key) : texts.unknown(tool.cls);
-    const toolIcon = icon(entry?.icon ?? "unknown");
-    const toolButton = button(label, () => this.tools.activate(tool), "scene-tool", toolIcon, h("span", { class: "tool-name" }, name));
+    const toolIcon = createIcon(entry?.icon ?? "unknown");
+    const toolButton = createButton(label, () => this.tools.activate(tool), "scene-tool", toolIcon, h("span", { class: "tool-name" }, name));
     toolButton.setAttribute("aria-label", name);
     toolButton.disabled = !tool.isSupported;
     if (entry) toolButton.setAttribute("aria-keyshortcuts", entry.key);

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Session } from "../../state/session";
 import type { TextStorage } from "../../storage";
 import { strings } from "../../strings";
@@ -9,7 +9,9 @@ import type { SourceEditor } from "./source-editor";
 const STORAGE_KEY = "linkwright.source-editor";
 const ENABLED = "1";
 
-/** The place of the editor in the panel Source, and the button that shows it; the editor is loaded with its first file. */
+/**
+ * The place of the editor in the panel Source, and the button that shows it; the editor is loaded with its first file.
+ */
 export class EditorPane {
   readonly element = h("div", { class: "editor-pane" });
   /** Why there is no editor, if the user wants one. */
@@ -41,7 +43,7 @@ export class EditorPane {
   ) {
     this.isEnabled = storage.getItem(STORAGE_KEY) === ENABLED;
     const texts = strings.sourceEditor;
-    this.toggle = button(texts.editHint, () => this.setEnabled(!this.isEnabled), "tool framed", icon("code"), texts.edit);
+    this.toggle = createButton(texts.editHint, () => this.setEnabled(!this.isEnabled), "tool framed", createIcon("code"), texts.edit);
     this.element.hidden = true;
     this.notice.hidden = true;
     this.updateToggle();

@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { Signal } from "../../signal";
 import { strings } from "../../strings";
 
@@ -36,7 +36,7 @@ export class FileTree {
     this.nameField.placeholder = texts.newFilePath;
     this.nameField.setAttribute("aria-label", texts.newFilePath);
     this.nameField.hidden = true;
-    const newFileButton = button(texts.newFileHint, () => this.askName(), "tool bare", icon("plus"), texts.newFile);
+    const newFileButton = createButton(texts.newFileHint, () => this.askName(), "tool bare", createIcon("plus"), texts.newFile);
     this.nameField.addEventListener("keydown", (event) => {
       if (event.key === "Escape") this.nameField.hidden = true;
       if (event.key !== "Enter" || this.nameField.value.trim() === "") return;
@@ -124,7 +124,7 @@ export class FileTree {
     for (const name of entries.folders) {
       const path = joinPath(folder, name);
       const isOpen = this.expandedFolders.has(path);
-      const item = createTreeItem(path, level, icon("chevron"), name);
+      const item = createTreeItem(path, level, createIcon("chevron"), name);
       item.setAttribute("aria-expanded", String(isOpen));
       items.push(item);
       if (isOpen) this.addItems(items, path, level + 1);
@@ -132,7 +132,7 @@ export class FileTree {
     for (const name of entries.files) {
       const path = joinPath(folder, name);
       const isUnsaved = this.unsavedPaths.has(path);
-      const item = createTreeItem(path, level, icon("file"), name);
+      const item = createTreeItem(path, level, createIcon("file"), name);
       item.setAttribute("aria-selected", String(path === this.currentPath));
       if (isUnsaved) item.append(h("span", { class: "file-tree-unsaved", title: strings.sourceEditor.unsaved, aria: { label: strings.sourceEditor.unsaved }, role: "img" }, "●"));
       items.push(item);

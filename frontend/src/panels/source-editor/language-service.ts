@@ -30,7 +30,9 @@ class TimeoutError extends Error {
   }
 }
 
-/** A client that waits for the start of its server, and treats an outdated answer as an empty one instead of an error. */
+/**
+ * A client that waits for the start of its server, and treats an outdated answer as an empty one instead of an error.
+ */
 class PatientClient extends LSPClient {
   // eslint-disable-next-line @typescript-eslint/no-unnecessary-type-parameters -- the type of the overridden method
   override request<Params, Result>(method: string, params: Params): Promise<Result> {

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { strings } from "../../strings";
 
 /** A line of a file in a list; `name` is the emphasized part of its text. */
@@ -27,7 +27,7 @@ export class PlaceList {
 
   /** @param onClosed - called when the user has closed the list, and the focus is to return to the text. */
   constructor(private readonly onClosed: () => void) {
-    const closeButton = button(strings.close, () => this.close(), "tool bare", icon("close"));
+    const closeButton = createButton(strings.close, () => this.close(), "tool bare", createIcon("close"));
     this.element.append(h("header", {}, this.heading, closeButton), this.list);
     this.element.hidden = true;
     this.list.addEventListener("click", ({ target }) => {

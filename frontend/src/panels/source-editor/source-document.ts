@@ -103,8 +103,8 @@ export class SourceDocument {
   }
 
   /**
-   * Returns the transaction that brings an edit of the robot into the text; null if the text has changed at the same place
-   * meanwhile.
+   * Returns the transaction that brings an edit of the robot into the text; null if the text has changed at the same
+   * place meanwhile.
    *
    * @param baseNumber - the number of the text that was edited; 0 for the one on the disk.
    */
@@ -154,7 +154,9 @@ export class SourceDocument {
     if (this.conflict) this.rebase(this.conflict.text);
   }
 
-  /** Resolves a conflict in favor of the text on the disk; undoing the returned transaction brings back the edited text. */
+  /**
+   * Resolves a conflict in favor of the text on the disk; undoing the returned transaction brings back the edited text.
+   */
   takeDisk(): TransactionSpec | null {
     const { conflict } = this;
     if (!conflict) return null;

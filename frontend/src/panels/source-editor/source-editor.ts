@@ -3,8 +3,8 @@ import { nextDiagnostic, openLintPanel, previousDiagnostic, diagnosticCount } fr
 import { formatDocument } from "@codemirror/lsp-client";
 import { EditorState, type Transaction, type TransactionSpec } from "@codemirror/state";
 import { EditorView, keymap } from "@codemirror/view";
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { UnsavedTextEdited } from "../../protocol";
 import { Signal } from "../../signal";
 import type { Session } from "../../state/session";
@@ -73,13 +73,13 @@ export class SourceEditor implements Documents {
     this.actions = new CodeActions(this.service.client, this, (uri) => this.findingsByUri.get(uri) ?? [], showMessage);
     this.navigation = new Navigation(this.service.client, this, this.places, showMessage);
     this.liveTexts = new LiveTexts(connection, this, () => this.changed.emit());
-    this.saveButton = button(texts.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), texts.save);
-    this.findingsButton = button(texts.findingsHint, () => openLintPanel(this.view), "tool framed", texts.findings(0));
+    this.saveButton = createButton(texts.saveHint, () => this.saveAll(), "tool framed editor-save", createIcon("save"), texts.save);
+    this.findingsButton = createButton(texts.findingsHint, () => openLintPanel(this.view), "tool framed", texts.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
-    const filesButton = button(texts.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), texts.files);
-    const formatButton = button(texts.formatHint, () => formatDocument(this.view), "tool framed", texts.format);
-    const actionsButton = button(texts.actionsHint, () => this.actions.open(this.view), "tool framed", icon("bulb"), texts.actions);
-    const symbolsButton = button(texts.symbolsHint, () => this.searchSymbols(), "tool framed", texts.symbols);
+    const filesButton = createButton(texts.filesHint, () => this.tree.toggle(), "tool framed", createIcon("tree"), texts.files);
+    const formatButton = createButton(texts.formatHint, () => formatDocument(this.view), "tool framed", texts.format);
+    const actionsButton = createButton(texts.actionsHint, () => this.actions.open(this.view), "tool framed", createIcon("bulb"), texts.actions);
+    const symbolsButton = createButton(texts.symbolsHint, () => this.searchSymbols(), "tool framed", texts.symbols);
     const buttons = [filesButton, symbolsButton, this.saveButton, actionsButton, formatButton, this.findingsButton];
     const toolbar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: texts.label } }, ...buttons, this.sceneStatus, this.status);
     this.tree.shownChanged.on((isShown) => filesButton.setAttribute("aria-expanded", String(isShown)));
@@ -297,8 +297,8 @@ export class SourceEditor implements Documents {
   }
 
   private showFindings({ uri, readOnlyReason }: SourceDocument): void {
-    const fix = readOnlyReason === "" ? (view: EditorView, range: { from: number; to: number }) => void this.actions.open(view, range) : null;
-    this.view.dispatch(showFindings(this.view.state, this.findingsByUri.get(uri) ?? [], fix));
+    const openFix = readOnlyReason === "" ? (view: EditorView, range: { from: number; to: number }) => void this.actions.open(view, range) : null;
+    this.view.dispatch(showFindings(this.view.state, this.findingsByUri.get(uri) ?? [], openFix));
   }
 
   private apply(document: SourceDocument, transaction: Transaction): void {
@@ -362,8 +362,8 @@ export class SourceEditor implements Documents {
       document.keepMine();
       finish(null);
     };
-    const keepButton = button(texts.keepMineHint, keepEdited, "tool framed", texts.keepMine);
-    const diskButton = button(texts.takeDiskHint, () => finish(document.takeDisk()), "tool framed", texts.takeDisk);
+    const keepButton = createButton(texts.keepMineHint, keepEdited, "tool framed", texts.keepMine);
+    const diskButton = createButton(texts.takeDiskHint, () => finish(document.takeDisk()), "tool framed", texts.takeDisk);
     this.notice.replaceChildren(h("span", {}, texts.conflict), keepButton, diskButton);
   }
 }

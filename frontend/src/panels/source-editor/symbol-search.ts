@@ -1,5 +1,5 @@
 import type { LSPClient } from "@codemirror/lsp-client";
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 import { shortenPath } from "../place";
@@ -56,8 +56,8 @@ export class SymbolSearch {
   ) {
     const texts = strings.sourceEditor;
     this.scopes = [
-      button(texts.symbolsOfFile, () => this.setWorkspaceWide(false), "tool framed", texts.symbolsOfFile),
-      button(texts.symbolsOfAll, () => this.setWorkspaceWide(true), "tool framed", texts.symbolsOfAll),
+      createButton(texts.symbolsOfFile, () => this.setWorkspaceWide(false), "tool framed", texts.symbolsOfFile),
+      createButton(texts.symbolsOfAll, () => this.setWorkspaceWide(true), "tool framed", texts.symbolsOfAll),
     ];
     const attributes = { "aria-label": texts.symbolName, "aria-controls": this.id, "aria-expanded": "true", "aria-autocomplete": "list", autocomplete: "off" };
     for (const [name, value] of Object.entries(attributes)) this.field.setAttribute(name, value);

@@ -1,4 +1,4 @@
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import type { ProgramPage } from "../../protocol";
 import { addSettings } from "../../requested-settings";
 import type { TerminalsState } from "../../state/terminals";
@@ -69,7 +69,7 @@ export class ProgramPanel implements Panel {
     for (const [id, frame] of this.frames) frame.hidden = id !== this.current?.id;
     const tabs = this.state.programs.map((program) => {
       const isCurrent = program.id === this.current?.id;
-      const tab = button(program.title, () => this.choose(program), isCurrent ? "on" : "", program.title || strings.panels.program);
+      const tab = createButton(program.title, () => this.choose(program), isCurrent ? "on" : "", program.title || strings.panels.program);
       tab.setAttribute("aria-pressed", String(isCurrent));
       return tab;
     });

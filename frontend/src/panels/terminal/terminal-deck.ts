@@ -1,7 +1,7 @@
 import "@xterm/xterm/css/xterm.css";
 import "../../styles/terminal.css";
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { TerminalItem } from "../../protocol";
 import type { TerminalSize, TerminalsState } from "../../state/terminals";
 import type { ThemeState } from "../../state/theme";
@@ -42,16 +42,16 @@ export class TerminalDeck {
   ) {
     const texts = strings.terminal;
     this.usesScreenReader = storage.getItem(READER_KEY) === ENABLED;
-    this.noticeButton = button(texts.restart, () => this.runNoticeAction(), "tool framed", texts.restart);
+    this.noticeButton = createButton(texts.restart, () => this.runNoticeAction(), "tool framed", texts.restart);
     this.notice.append(this.noticeText, this.noticeButton);
-    this.closeButton = button(texts.closeHint, () => this.close(), "tool", icon("close"), texts.close);
-    this.readerButton = button(texts.readerHint, () => this.toggleReader(), "tool", icon("speech"));
-    const copyButton = button(texts.copyHint, () => void this.screen?.copy(), "tool", icon("copy"));
+    this.closeButton = createButton(texts.closeHint, () => this.close(), "tool", createIcon("close"), texts.close);
+    this.readerButton = createButton(texts.readerHint, () => this.toggleReader(), "tool", createIcon("speech"));
+    const copyButton = createButton(texts.copyHint, () => void this.screen?.copy(), "tool", createIcon("copy"));
     const toolbar = h(
       "div",
       { class: "toolbar" },
       this.tabs,
-      button(texts.newHint, () => this.openNew(), "tool", icon("plus"), texts.new),
+      createButton(texts.newHint, () => this.openNew(), "tool", createIcon("plus"), texts.new),
       h("span", { class: "spacer" }),
       h("span", { class: "note terminal-keys" }, texts.keys),
       copyButton,
@@ -196,7 +196,7 @@ export class TerminalDeck {
     const tabs = this.state.items.map(({ id, status }) => {
       const isCurrent = id === this.currentId;
       const name = strings.terminal.name(id);
-      const tab = button(name, () => this.choose(id), isCurrent ? "on" : "", status === null ? name : strings.terminal.ended(name));
+      const tab = createButton(name, () => this.choose(id), isCurrent ? "on" : "", status === null ? name : strings.terminal.ended(name));
       tab.setAttribute("role", "tab");
       tab.setAttribute("aria-selected", String(isCurrent));
       tab.tabIndex = isCurrent ? 0 : -1;
@@ -257,7 +257,9 @@ export class TerminalDeck {
     this.readerButton.setAttribute("aria-pressed", String(this.usesScreenReader));
   }
 
-  /** Leaves the terminals some time after the page was hidden, and shows the chosen one again when the page is shown. */
+  /**
+   * Leaves the terminals some time after the page was hidden, and shows the chosen one again when the page is shown.
+   */
   private followPage(): void {
     clearTimeout(this.hideTimer);
     if (!document.hidden) this.update();

@@ -1,4 +1,4 @@
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import type { RecordedFile } from "../../protocol";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -19,7 +19,7 @@ export class RecordButton {
 
   constructor(private readonly session: Session) {
     const { recording } = session;
-    this.button = button(strings.recording.record, () => this.onClick(), "timeline-live timeline-record", "");
+    this.button = createButton(strings.recording.record, () => this.onClick(), "timeline-live timeline-record", "");
     this.element = h("span", { class: "timeline-recorder" }, this.problem, this.button);
     recording.changed.on(() => this.show());
     recording.finished.on((file) => this.showFile(file));

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { SyncMode, TimeControlState, Times } from "../../state/time";
 import { strings } from "../../strings";
 import { onVisibilityChange } from "../../widgets/visibility";
@@ -31,7 +31,7 @@ export class TimePanel implements Panel {
     close: () => void,
   ) {
     const texts = strings.time;
-    this.pauseButton = button(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", icon("pause"), texts.pause);
+    this.pauseButton = createButton(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", createIcon("pause"), texts.pause);
     this.modeSelect.append(...MODES.map((mode) => new Option(texts.modes[mode], mode)));
     this.modeSelect.setAttribute("aria-label", texts.sync);
     this.sourceSelect.setAttribute("aria-label", texts.source);
@@ -45,8 +45,8 @@ export class TimePanel implements Panel {
       createLabel(texts.source, this.sourceSelect),
       ...this.timeOutputs.map(({ name, output }) => createLabel(texts[name], output, name)),
       h("span", { class: "spacer" }),
-      button(texts.resetHint, () => time.reset(), "tool", icon("reset"), texts.reset),
-      button(strings.close, close, "tool bare strip-close", icon("close")),
+      createButton(texts.resetHint, () => time.reset(), "tool", createIcon("reset"), texts.reset),
+      createButton(strings.close, close, "tool bare strip-close", createIcon("close")),
     );
     time.changed.on(() => this.update());
     this.update();

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { HistoryExtent } from "../../protocol";
 import { LETTER_INPUT_SELECTOR } from "../../scene/keyboard";
 import type { RecordingControl } from "../../state/recording";
@@ -53,12 +53,12 @@ export class TimelineBar {
     this.timeline = timeline;
     this.recording = session.recording;
     const texts = strings.timeline;
-    this.playButton = button(texts.play, () => timeline.setPlaying(!timeline.isPlaying), "tool bare", icon("play"));
-    this.loopButton = button(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", icon("loop"));
-    this.liveButton = button(texts.live, () => timeline.goLive(), "timeline-live");
+    this.playButton = createButton(texts.play, () => timeline.setPlaying(!timeline.isPlaying), "tool bare", createIcon("play"));
+    this.loopButton = createButton(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", createIcon("loop"));
+    this.liveButton = createButton(texts.live, () => timeline.goLive(), "timeline-live");
     this.liveButton.textContent = texts.liveShort;
-    this.backButton = button(texts.back, () => timeline.step(false), "tool bare", icon("stepBack"));
-    this.forwardButton = button(texts.forward, () => timeline.step(true), "tool bare", icon("step"));
+    this.backButton = createButton(texts.back, () => timeline.step(false), "tool bare", createIcon("stepBack"));
+    this.forwardButton = createButton(texts.forward, () => timeline.step(true), "tool bare", createIcon("step"));
     this.speedSelect.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speedSelect.addEventListener("change", () => timeline.setSpeed(Number(this.speedSelect.value)));
     this.stepSelect.addEventListener("change", () => (timeline.stepTopic = this.stepSelect.value));
@@ -110,7 +110,7 @@ export class TimelineBar {
     if (this.playButton.title !== label) {
       this.playButton.title = label;
       this.playButton.setAttribute("aria-label", label);
-      this.playButton.replaceChildren(icon(isPlaying ? "pause" : "play"));
+      this.playButton.replaceChildren(createIcon(isPlaying ? "pause" : "play"));
     }
     this.loopButton.setAttribute("aria-pressed", String(isLooping));
     this.loopButton.classList.toggle("on", isLooping);

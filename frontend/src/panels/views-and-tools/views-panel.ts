@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Property, PropertyValue } from "../../protocol";
 import type { Session } from "../../state/session";
 import { FIXED_FRAME, type ViewState } from "../../state/view";
@@ -34,10 +34,10 @@ export class ViewsPanel implements Panel {
       () => this.createItems(),
       () => [FIXED_FRAME, ...frames.names],
     );
-    const zeroButton = button(texts.zeroHint, () => view.zero(), "tool", icon("zero"), h("span", { class: "tool-name" }, texts.zero));
+    const zeroButton = createButton(texts.zeroHint, () => view.zero(), "tool", createIcon("zero"), h("span", { class: "tool-name" }, texts.zero));
     zeroButton.setAttribute("aria-label", texts.zero);
-    this.removeButton = button(texts.removeHint, () => this.removeChosen(), "tool", texts.remove);
-    this.renameButton = button(texts.renameHint, () => this.startRename(), "tool", texts.rename);
+    this.removeButton = createButton(texts.removeHint, () => this.removeChosen(), "tool", texts.remove);
+    this.renameButton = createButton(texts.renameHint, () => this.startRename(), "tool", texts.rename);
     this.typeSelect.addEventListener("change", () => view.setClass(this.typeSelect.value));
     this.nameField.addEventListener("keydown", (event) => this.onNameKey(event));
     this.nameField.addEventListener("blur", () => {
@@ -52,13 +52,13 @@ export class ViewsPanel implements Panel {
         { class: "toolbar" },
         h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, texts.type), this.typeSelect),
         zeroButton,
-        button(texts.resetHint, () => view.reset(), "tool bare", icon("reset")),
+        createButton(texts.resetHint, () => view.reset(), "tool bare", createIcon("reset")),
       ),
       tree.element,
       h(
         "div",
         { class: "toolbar bottom" },
-        button(texts.saveHint, () => view.save(shortNameOf(view.current.cls)), "tool", texts.save),
+        createButton(texts.saveHint, () => view.save(shortNameOf(view.current.cls)), "tool", texts.save),
         this.removeButton,
         this.renameButton,
         this.nameField,

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { VoiceState } from "../../state/voice/voice";
 import { strings } from "../../strings";
 
@@ -10,7 +10,7 @@ export const TALK_KEY = "v";
 export function createTalkButton(voice: VoiceState, className: string, ...texts: readonly string[]): HTMLButtonElement {
   const { talk, talkHint } = strings.voice;
   const aria = texts.length > 0 ? {} : { label: talk };
-  const element = h("button", { class: className, title: talkHint, aria }, icon("microphone"), ...texts);
+  const element = h("button", { class: className, title: talkHint, aria }, createIcon("microphone"), ...texts);
   element.type = "button";
   element.setAttribute("aria-keyshortcuts", TALK_KEY);
   element.addEventListener("pointerdown", (event) => {

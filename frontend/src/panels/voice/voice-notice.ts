@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { createEnrollHereButton, proposesEnrolling } from "./enroll-here";
@@ -23,7 +23,7 @@ export class VoiceNotice {
     private readonly words: WordsState,
   ) {
     this.enrollButton = createEnrollHereButton(words);
-    this.element.append(icon("microphone"), this.text, this.enrollButton);
+    this.element.append(createIcon("microphone"), this.text, this.enrollButton);
     this.element.hidden = true;
     voice.changed.on(() => this.show());
     voice.conversationChanged.on(() => this.show());

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { ConversationPart } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
@@ -42,7 +42,7 @@ export class VoicePanel implements Panel {
     this.voiceSelect = createSelect(texts.voice, [], (voiceUri) => speaker.configure({ voice: voiceUri }));
     const wordsBox = (this.wordsBox = new WordsBox(words, voice));
     this.enrollProposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, texts.words.proposal), createEnrollHereButton(words));
-    const clearButton = button(texts.clearHint, () => voice.clear(), "tool bare", icon("clear"));
+    const clearButton = createButton(texts.clearHint, () => voice.clear(), "tool bare", createIcon("clear"));
     this.element = h(
       "div",
       { class: "panel monitor" },
@@ -90,7 +90,7 @@ export class VoicePanel implements Panel {
     field.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && !event.isComposing) send();
     });
-    const sendButton = button(texts.sendHint, send, "tool framed", texts.send);
+    const sendButton = createButton(texts.sendHint, send, "tool framed", texts.send);
     return h("div", { class: "voice-command" }, h("div", { class: "voice-row" }, field, sendButton), this.textNote);
   }
 
@@ -127,7 +127,7 @@ export class VoicePanel implements Panel {
     const { history, partial } = this.voice;
     const texts = strings.voice;
     const createRow = (part: ConversationPart, text: string): HTMLElement =>
-      h("div", { class: `voice-said ${part}` }, h("span", { title: texts.parts[part] }, icon(PART_ICONS[part])), h("span", { class: "voice-part" }, texts.parts[part]), h("span", {}, text));
+      h("div", { class: `voice-said ${part}` }, h("span", { title: texts.parts[part] }, createIcon(PART_ICONS[part])), h("span", { class: "voice-part" }, texts.parts[part]), h("span", {}, text));
     const rows = history.map(({ part, text }) => createRow(part, text));
     if (partial !== "") rows.push(createRow("partial", partial));
     const isAtEnd = this.historyBox.scrollTop + this.historyBox.clientHeight >= this.historyBox.scrollHeight - 4;

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { EnrolledWord, TakeJudged } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
@@ -52,7 +52,7 @@ export class WordsBox {
       fileInput.value = "";
       void file?.text().then((text) => words.importFile(text));
     });
-    const endButton = button(texts.endHereHint, () => words.setEnrollingHere(false), "tool framed", texts.endHere);
+    const endButton = createButton(texts.endHereHint, () => words.setEnrollingHere(false), "tool framed", texts.endHere);
     this.hereBox = h("div", { class: "word-here" }, this.hereProgress, this.hereNote, endButton);
     this.element = h(
       "details",
@@ -60,14 +60,14 @@ export class WordsBox {
       h("summary", {}, texts.title),
       this.hereBox,
       h("p", { class: "note" }, texts.hint),
-      h("div", { class: "voice-row" }, wordField, suggestions, button(texts.addHint, addWord, "tool framed", texts.add)),
+      h("div", { class: "voice-row" }, wordField, suggestions, createButton(texts.addHint, addWord, "tool framed", texts.add)),
       this.list,
       this.problemNote,
       h(
         "div",
         { class: "voice-row" },
-        button(texts.importHint, () => fileInput.click(), "tool framed", icon("upload"), texts.importFile),
-        button(texts.exportHint, () => words.requestFile(), "tool framed", icon("download"), texts.exportFile),
+        createButton(texts.importHint, () => fileInput.click(), "tool framed", createIcon("upload"), texts.importFile),
+        createButton(texts.exportHint, () => words.requestFile(), "tool framed", createIcon("download"), texts.exportFile),
         fileInput,
       ),
       this.file,
@@ -132,7 +132,7 @@ export class WordsBox {
   private createRow({ name }: EnrolledWord): HTMLElement {
     const texts = strings.voice.words;
     const { words } = this;
-    const sayButton = button(texts.say(name), () => undefined, "tool framed word-say", icon("microphone"));
+    const sayButton = createButton(texts.say(name), () => undefined, "tool framed word-say", createIcon("microphone"));
     const startTake = (): void => void words.startTake(name);
     const endTake = (): void => {
       if (words.recording === name) words.endTake();
@@ -151,8 +151,8 @@ export class WordsBox {
     sayButton.addEventListener("keyup", (event) => {
       if (event.key === " " || event.key === "Enter") endTake();
     });
-    const renameButton = button(texts.rename(name), () => askName(texts.renameTitle, texts.name, name, (newName) => words.rename(name, newName)), "tool bare", icon("rename"));
-    const removeButton = button(texts.remove(name), () => words.remove(name), "tool bare", icon("remove"));
+    const renameButton = createButton(texts.rename(name), () => askName(texts.renameTitle, texts.name, name, (newName) => words.rename(name, newName)), "tool bare", createIcon("rename"));
+    const removeButton = createButton(texts.remove(name), () => words.remove(name), "tool bare", createIcon("remove"));
     const head = h("div", { class: "word-head" }, sayButton, h("span", { class: "word-name" }, name), h("span", { class: "word-takes note" }), renameButton, removeButton);
     return h("div", { class: "word", role: "listitem" }, head, h("div", { class: "note word-judged", role: "status" }));
   }

@@ -108,10 +108,10 @@ export class CameraDrawing implements Drawing {
    * drawn later.
    */
   private canDrawNow(): boolean {
-    const wait = this.nextDrawMs - performance.now();
-    if (wait <= 0) return true;
+    const waitMs = this.nextDrawMs - performance.now();
+    if (waitMs <= 0) return true;
     clearTimeout(this.retryTimer);
-    this.retryTimer = window.setTimeout(this.context.invalidate, wait);
+    this.retryTimer = window.setTimeout(this.context.invalidate, waitMs);
     return false;
   }
 

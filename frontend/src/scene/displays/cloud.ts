@@ -91,7 +91,7 @@ export class CloudDrawing implements Drawing {
     const inverse = new Matrix4();
     // Half the height of the visible area, m: at a distance of one meter, or at any distance for an orthographic
     // camera.
-    const { elements } = this.context.camera().projectionMatrix;
+    const { elements } = this.context.getCamera().projectionMatrix;
     const pointerRadius = POINTER_RADIUS / elements[5];
     const isOrthographic = elements[15] === 1;
     let nearestHit: Hit | null = null;

@@ -19,7 +19,7 @@ export interface DrawingContext {
   /** Shows something outside the scene in step with the next frame, see `FrameLoop.schedule`. */
   readonly showWithFrame: (show: () => void) => void;
   /** Returns the current camera of the 3-D view. */
-  readonly camera: () => Camera;
+  readonly getCamera: () => Camera;
   /** Whether a light with shadows would not make the page slow. */
   readonly canAffordStudio: () => boolean;
 }

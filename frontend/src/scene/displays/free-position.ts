@@ -1,6 +1,6 @@
 import { Box3, Vector3, type Matrix4 } from "three";
 
-/** Half the side of the free space, and the distance between the places that are tried, m. */
+/** Half the side of the free space, and the distance between the positions that are tried, m. */
 const HALF_SIDE_M = 0.5;
 const STEP_M = 1;
 /** Objects up to this height count as floor, m. */
@@ -10,8 +10,8 @@ const MAX_STEPS = 20;
 const DIRECTIONS = [[1, 0], [0, 1], [-1, 0], [0, -1]] as const;
 
 /**
- * Returns a place on the ground of a world with room for an object of one meter: the given place or, along an axis, the
- * nearest free one at an integer number of meters from it; next to all existing objects if no such place is free.
+ * Returns a position on the ground of a world with room for an object of one meter: the given one or, along an axis,
+ * the nearest free one at an integer number of meters from it; next to all existing objects if none of these is free.
  *
  * @param boxes - the boxes around the existing objects, in the fixed frame, m.
  * @param world - the pose of the world in the fixed frame.

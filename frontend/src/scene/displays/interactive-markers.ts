@@ -44,11 +44,11 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   update(): void {
-    const { session, camera, display } = this.context;
+    const { session, getCamera, display } = this.context;
     const isAnyHeld = [...this.markers.values()].some((marker) => marker.isHeld);
     for (const marker of this.markers.values()) {
       const isHidden = isAnyHeld && this.interaction.hidesOthers && !marker.isHeld;
-      marker.update(session.frames, camera(), {
+      marker.update(session.frames, getCamera(), {
         showsDescriptions: display.rows.bool(true, "Show Descriptions"),
         showsAxes: display.rows.bool(false, "Show Axes"),
         showsAids: display.rows.bool(false, "Show Visual Aids"),
@@ -98,7 +98,7 @@ export class InteractiveMarkersDrawing implements Drawing {
     const picked = event.hit && this.find(event.hit.key);
     if (!event.hit || !picked) return false;
     const { marker, control } = picked;
-    const { invalidate, camera } = this.context;
+    const { invalidate, getCamera } = this.context;
     switch (event.type) {
       case "enter":
       case "leave":
@@ -110,7 +110,7 @@ export class InteractiveMarkersDrawing implements Drawing {
       case "down":
         return this.onPointerDown(event, event.hit, marker, control);
       case "move":
-        if (marker.followPointer(event, camera())) {
+        if (marker.followPointer(event, getCamera())) {
           this.sendPose(marker, control);
           invalidate();
         }

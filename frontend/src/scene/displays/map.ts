@@ -33,7 +33,7 @@ export class MapDrawing implements Drawing {
     this.plane.setLook({
       palette: this.palette,
       alpha: rows.number(0.7, "Alpha"),
-      isSeeThrough: scheme !== "map",
+      isTranslucent: scheme !== "map",
       isBehind: rows.bool(false, "Draw Behind"),
       order: RENDER_ORDERS[scheme],
     });

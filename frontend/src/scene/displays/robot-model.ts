@@ -89,7 +89,7 @@ export class RobotModelDrawing implements Drawing {
   /** Draws a part at another pose than that of the description; null restores it. */
   displace(displacement: Displacement | null): void {
     this.displacement = displacement;
-    this.drawing?.displaceShape(displacement?.shape ?? null);
+    this.drawing?.displaceShape(displacement?.movedShape ?? null);
     this.context.invalidate();
   }
 
@@ -107,11 +107,11 @@ export class RobotModelDrawing implements Drawing {
     const { frames } = this.context.session;
     const computePose = (link: LinkScene, matrix: Matrix4): boolean => {
       const hasPose = readFramePose(frames, frames.rowOf(link.frame), matrix);
-      if (hasPose) this.displacement?.link?.(link.name, matrix);
+      if (hasPose) this.displacement?.moveLink?.(link.name, matrix);
       return hasPose;
     };
     this.drawing?.updatePoses(computePose, this.createDuplicateFilter());
-    this.drawing?.chooseDetail(this.context.camera());
+    this.drawing?.chooseDetail(this.context.getCamera());
   }
 
   simplify(view: MovingView | null): void {

@@ -86,7 +86,7 @@ export class WorldDrawing implements Drawing {
       this.lights.updatePoses(this.computeWorldPose(), (link) => this.poseOf(link), () => this.updateVisibleBox(drawing));
     }
     this.isStyleStale = this.isPoseStale = false;
-    drawing.chooseDetail(context.camera());
+    drawing.chooseDetail(context.getCamera());
   }
 
   simplify(view: MovingView | null): void {

@@ -66,7 +66,7 @@ export class PartHandles {
       this.dragStart = { handles: gizmo.pose, draft: currentDraft };
       return true;
     }
-    if (event.type !== "move" || event.left || event.middle || event.right || !gizmo.hover(event)) return false;
+    if (event.type !== "move" || event.isLeftDown || event.isMiddleDown || event.isRightDown || !gizmo.hover(event)) return false;
     this.stage.viewport.canvas.style.cursor = "grab";
     return true;
   }
@@ -140,7 +140,7 @@ export class PartHandles {
     const { dragStart, gizmo, editing } = this;
     const { chosenPart } = editing;
     const base = chosenPart && this.basePoseOf(chosenPart);
-    const steps = editing.snapping.chooseSteps(event.ctrl);
+    const steps = editing.snapping.chooseSteps(event.isCtrlDown);
     gizmo.drag(event, { length: 0, angle: steps.angle });
     if (!dragStart || !base) return;
     // Express the motion of the handles in the frame of the part's values.
@@ -188,14 +188,14 @@ export class PartHandles {
     if (part.part === "joint") {
       const links = this.listDescendantLinks(display, part.name);
       this.findRobotDrawing(display)?.displace({
-        link: (name, matrix) => {
+        moveLink: (name, matrix) => {
           const base = links.has(name) ? this.basePoseOf(part) : null;
           if (base) matrix.premultiply(base.clone().multiply(newPose).multiply(oldPose.clone().invert()).multiply(base.invert()));
         },
       });
     } else {
       const twins = editing.parts.filter((candidate) => candidate.part === part.part && candidate.index < part.index && isPlacedAs(candidate, part));
-      this.findRobotDrawing(display)?.displace({ shape: { link: part.name, kind: part.part, index: twins.length, from: oldPose, to: newPose } });
+      this.findRobotDrawing(display)?.displace({ movedShape: { link: part.name, kind: part.part, index: twins.length, from: oldPose, to: newPose } });
     }
     stage.loop.invalidate();
   }

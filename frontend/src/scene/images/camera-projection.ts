@@ -15,7 +15,10 @@ export function computeZoom(
   return imageAspect > windowAspect ? [factor, (factor / imageAspect) * windowAspect] : [(factor / windowAspect) * imageAspect, factor];
 }
 
-/** Returns the projection of a pinhole camera whose image covers `zoom` of the window; the far plane is at `farDistance`, m. */
+/**
+ * Returns the projection of a pinhole camera whose image covers `zoom` of the window; the far plane is at
+ * `farDistance`, m.
+ */
 export function createProjection(camera: CameraModel, zoom: readonly [number, number], farDistance: number): Matrix4 {
   const { width, height, focal_x, focal_y, center_x, center_y } = camera;
   const x = ((2 * focal_x) / width) * zoom[0];

@@ -14,8 +14,8 @@ export interface DragEvent {
   /** The movement since the last event, pixels. */
   dx: number;
   dy: number;
-  shift: boolean;
-  ctrl: boolean;
+  isShiftDown: boolean;
+  isCtrlDown: boolean;
   /** The axes of the camera, unit vectors. */
   right: Vector3;
   up: Vector3;
@@ -75,7 +75,7 @@ export class Drag {
       case "rotate_3d":
         return this.rotateFreely(event);
       case "move_rotate_3d":
-        return event.ctrl ? this.rotateFreely(event) : this.moveFreely(event);
+        return event.isCtrlDown ? this.rotateFreely(event) : this.moveFreely(event);
       case "none":
       case "menu":
       case "button":
@@ -122,7 +122,7 @@ export class Drag {
   }
 
   private moveFreely(event: DragEvent): boolean {
-    if (!event.shift) return this.moveInPlane(event.ray, event.forward);
+    if (!event.isShiftDown) return this.moveInPlane(event.ray, event.forward);
     const distance = event.ray.origin.distanceTo(this.pose.position);
     const step = -pickLarger(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
     for (const point of [this.pose.position, this.startPose.position, this.grabPoint]) {
@@ -134,7 +134,7 @@ export class Drag {
   private rotateFreely(event: DragEvent): boolean {
     const angleOf = (pixels: number): number => (pixels / PIXELS_PER_TURN) * 2 * Math.PI;
     const rotation = new Quaternion();
-    if (event.shift) rotation.setFromAxisAngle(event.forward, angleOf(pickLarger(event.dx, event.dy)));
+    if (event.isShiftDown) rotation.setFromAxisAngle(event.forward, angleOf(pickLarger(event.dx, event.dy)));
     else {
       rotation.setFromAxisAngle(event.up, angleOf(event.dx));
       rotation.multiply(new Quaternion().setFromAxisAngle(event.right, angleOf(event.dy)));

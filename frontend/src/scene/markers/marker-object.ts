@@ -26,7 +26,9 @@ export interface MarkerObject {
   dispose(): void;
 }
 
-/** Creates the object of a marker; `onChanged` is called when a mesh or texture has arrived, with the problem or null. */
+/**
+ * Creates the object of a marker; `onChanged` is called when a mesh or texture has arrived, with the problem or null.
+ */
 export function createMarkerObject(
   marker: MarkerShape,
   meshes: MeshLibrary,
@@ -83,12 +85,12 @@ class TrianglesMarker implements MarkerObject {
     geometry.computeVertexNormals();
     const colors = createVertexColors(marker);
     const alpha = color[3] ?? 1;
-    let isSeeThrough = alpha < MIN_OPAQUE_ALPHA;
+    let isTranslucent = alpha < MIN_OPAQUE_ALPHA;
     if (colors) {
       geometry.setAttribute("color", new BufferAttribute(colors, 4));
-      for (let i = 3; i < colors.length; i += 4) isSeeThrough ||= (colors[i] ?? 1) < MIN_OPAQUE_ALPHA;
+      for (let i = 3; i < colors.length; i += 4) isTranslucent ||= (colors[i] ?? 1) < MIN_OPAQUE_ALPHA;
     }
-    const style = { side: DoubleSide, transparent: isSeeThrough, depthWrite: !isSeeThrough, vertexColors: colors !== null };
+    const style = { side: DoubleSide, transparent: isTranslucent, depthWrite: !isTranslucent, vertexColors: colors !== null };
     // As in RViz, triangles with individual colors are not lit.
     const material = colors ? new MeshBasicMaterial(style) : new MeshLambertMaterial({ ...style, opacity: alpha });
     if (!colors && texture === null) material.color.setRGB(color[0] ?? 0, color[1] ?? 0, color[2] ?? 0);

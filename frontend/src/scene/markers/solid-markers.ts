@@ -113,9 +113,9 @@ export class SolidMarkers {
 
   end(): void {
     for (const solids of Object.values(this.solids)) solids.end();
-    const translucent = this.arrows.filter((arrow) => arrow.alpha < MIN_OPAQUE_ALPHA);
+    const translucentArrows = this.arrows.filter((arrow) => arrow.alpha < MIN_OPAQUE_ALPHA);
     const opaqueArrows = this.arrows.filter((arrow) => arrow.alpha >= MIN_OPAQUE_ALPHA);
-    for (const [batch, arrows] of [[this.opaqueArrows, opaqueArrows], [this.translucentArrows, translucent]] as const) {
+    for (const [batch, arrows] of [[this.opaqueArrows, opaqueArrows], [this.translucentArrows, translucentArrows]] as const) {
       batch.begin(arrows.length);
       for (const { pose, shape, color, alpha } of arrows) batch.add(pose, shape, { color, alpha });
       batch.end();

@@ -63,6 +63,6 @@ function parseHeader(json: ArrayBuffer, errorText: string): GltfHeader {
 function checkHeader(header: GltfHeader): void {
   const version = header.asset?.version ?? "1.0";
   if (!version.startsWith("2.")) throw new MeshError(strings.meshes.gltf.version(version));
-  const unsupported = UNSUPPORTED_EXTENSIONS.filter((name) => header.extensionsRequired?.includes(name));
-  if (unsupported.length > 0) throw new MeshError(strings.meshes.gltf.extension(quoteNames(unsupported)));
+  const unsupportedExtensions = UNSUPPORTED_EXTENSIONS.filter((name) => header.extensionsRequired?.includes(name));
+  if (unsupportedExtensions.length > 0) throw new MeshError(strings.meshes.gltf.extension(quoteNames(unsupportedExtensions)));
 }

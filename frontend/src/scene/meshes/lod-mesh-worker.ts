@@ -1,13 +1,13 @@
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { createLodMesh, type LodMesh, type Triangles } from "./lod-mesh";
 
-/** The page's request: a stand-in for each piece of a mesh. */
+/** The page's request: an LOD mesh for each piece of a mesh. */
 export interface LodMeshRequest {
   readonly id: number;
   readonly pieces: readonly Triangles[];
 }
 
-/** The answer; `standIns` is null if they could not be computed. */
+/** The answer; `lodMeshes` is null if they could not be computed. */
 export interface LodMeshResponse {
   readonly id: number;
   readonly lodMeshes: readonly LodMesh[] | null;

@@ -23,7 +23,7 @@ export interface LodMesh {
   /** The levels from the finest, which has all triangles, to the coarsest. */
   readonly levels: readonly LodLevel[];
   /** The bounding sphere: x y z of its center, radius. */
-  readonly sphere: readonly [number, number, number, number];
+  readonly boundingSphere: readonly [number, number, number, number];
 }
 
 /** The maximum errors of the levels, as shares of the mesh's size. */
@@ -32,7 +32,7 @@ const ERROR_STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
 const MIN_SAVING = 0.2;
 /** The weight of errors in normals, as a share of the mesh's size. */
 const NORMAL_WEIGHT = 0.2;
-/** Corners at one place share a vertex if the cosine between their normals is at least this: 30 degrees. */
+/** Corners at one position share a vertex if the cosine between their normals is at least this: 30 degrees. */
 const MIN_COSINE = 0.866;
 const COMPONENT_COUNT = 3;
 
@@ -50,15 +50,15 @@ export function createLodMesh(mesh: Triangles, simplifier: Simplifier): LodMesh 
       previousIndex, positions, COMPONENT_COUNT, normals, COMPONENT_COUNT, weights, null, 0, maxError, ["Prune"],
     );
     if (reducedIndex.length > (1 - MIN_SAVING) * previousIndex.length) continue;
-    error += deviation * scale; // each starts where the one before ended
+    error += deviation * scale; // each level simplifies the previous one, so errors add up
     levels.push({ error, index: reducedIndex });
     previousIndex = reducedIndex;
   }
-  return { positions, normals, levels, sphere: computeBoundingSphere(positions) };
+  return { positions, normals, levels, boundingSphere: computeBoundingSphere(positions) };
 }
 
 /**
- * Merges corners at the same place with similar normals. Exporters write each triangle separately, but simplification
+ * Merges corners at the same position with similar normals. Exporters write each triangle separately, but simplification
  * needs triangles that share vertices.
  */
 function weldCorners({ positions, normals, index }: Triangles, simplifier: Simplifier): { positions: Float32Array; normals: Float32Array; index: Uint32Array } {
@@ -66,7 +66,8 @@ function weldCorners({ positions, normals, index }: Triangles, simplifier: Simpl
   const cornerCount = index?.length ?? positions.length / COMPONENT_COUNT;
   const weldedIndex = new Uint32Array(cornerCount);
   /**
-   * The newest vertex at each position, and for each vertex the previous one at the same position; numbers plus one, 0 for none.
+   * The newest vertex at each position, and for each vertex the previous one at the same position; numbers plus one, 0
+   * for none.
    */
   const [newestVertices, previousVertices] = [new Uint32Array(weldedVertices.length), new Uint32Array(cornerCount)];
   const [positionSums, normalSums] = [new Float32Array(cornerCount * COMPONENT_COUNT), new Float32Array(cornerCount * COMPONENT_COUNT)];

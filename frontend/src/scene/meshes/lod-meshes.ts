@@ -5,14 +5,14 @@ import type { LodMeshResponse, LodMeshRequest } from "./lod-mesh-worker";
 /** Larger meshes are not copied to a worker. */
 const MAX_CORNER_COUNT = 9_000_000;
 
-/** The part of `Worker` that the page uses for stand-ins. */
+/** The part of `Worker` that the page uses for LOD meshes. */
 export interface LodMeshWorker {
   onmessage: ((event: MessageEvent<LodMeshResponse>) => void) | null;
   onerror: ((event: ErrorEvent) => void) | null;
   postMessage(request: LodMeshRequest, transfer: Transferable[]): void;
 }
 
-/** Computes stand-ins of meshes on demand; the worker is loaded with the first request. */
+/** Computes LOD meshes on demand; the worker is loaded with the first request. */
 export class LodMeshes {
   private worker: LodMeshWorker | null = null;
   private readonly results = new WeakMap<BufferGeometry, readonly LodMesh[] | "waits" | "none">();
@@ -22,10 +22,10 @@ export class LodMeshes {
   constructor(private readonly createWorker: () => LodMeshWorker) {}
 
   /**
-   * Returns the stand-ins of a geometry, one for each group or one for all of it; null until they are computed, empty
+   * Returns the LOD meshes of a geometry, one for each group or one for all of it; null until they are computed, empty
    * if there are none.
    */
-  lodMeshesOf(geometry: BufferGeometry): readonly LodMesh[] | null {
+  getOrRequest(geometry: BufferGeometry): readonly LodMesh[] | null {
     const existing = this.results.get(geometry);
     if (existing === undefined) this.request(geometry);
     return existing === undefined || existing === "waits" ? null : existing === "none" ? [] : existing;

@@ -45,7 +45,7 @@ export class Manipulation {
       return true;
     }
     if (event.type === "down" && event.button === "left") return gizmo.grab(event);
-    if (event.type !== "move" || event.left || event.middle || event.right || !gizmo.hover(event)) return false;
+    if (event.type !== "move" || event.isLeftDown || event.isMiddleDown || event.isRightDown || !gizmo.hover(event)) return false;
     this.stage.viewport.canvas.style.cursor = "grab";
     return true;
   }
@@ -62,7 +62,7 @@ export class Manipulation {
 
   private drag(event: ToolEvent): void {
     const { modeling, gizmo } = this;
-    const steps = modeling.snapping.chooseSteps(event.ctrl);
+    const steps = modeling.snapping.chooseSteps(event.isCtrlDown);
     gizmo.drag(event, steps);
     const entities = modeling.selectedEntities;
     const primary = entities.at(-1);

@@ -56,10 +56,10 @@ export class Modeler {
     if (this.manipulation.onPointer(event)) return null;
     const { placing } = modeling;
     if (this.placer.onPointer(event)) return null;
-    if (event.type !== "up" || !event.click) return event;
+    if (event.type !== "up" || !event.isClick) return event;
     if (event.button === "left" && !placing) this.onClick(event);
     else if (event.button === "right") this.openMenu(event);
-    return { ...event, click: false };
+    return { ...event, isClick: false };
   }
 
   /** Handles Esc: cancels the drag or the placing in progress, or else clears the selection. */
@@ -70,11 +70,11 @@ export class Modeler {
     else modeling.select([]);
   }
 
-  private onClick({ x, y, shift, ctrl }: ToolEvent): void {
+  private onClick({ x, y, isShiftDown, isCtrlDown }: ToolEvent): void {
     const { modeling } = this.session;
     const name = this.entityAt(x, y);
-    if (name !== null) modeling.select([name], shift || ctrl ? "toggle" : "replace");
-    else if (!shift && !ctrl) modeling.select([]);
+    if (name !== null) modeling.select([name], isShiftDown || isCtrlDown ? "toggle" : "replace");
+    else if (!isShiftDown && !isCtrlDown) modeling.select([]);
   }
 
   /** Returns the entity of the world's file under the pointer; the ground does not hide entities. */

@@ -33,9 +33,9 @@ export class Placer {
     if (event.type === "leave") this.showGhost(placing, null);
     if (placing.kind === "wall") return this.onWallPointer(placing, event);
     const placement = this.placementAt(placing, event);
-    if (event.type === "move" && !event.left) this.showGhost(placing, placement);
-    if (event.type !== "up" || !event.click || event.button !== "left") return event.type === "move" && !isAnyButtonPressed(event);
-    if (placement) this.add(placing, placement, event.shift);
+    if (event.type === "move" && !event.isLeftDown) this.showGhost(placing, placement);
+    if (event.type !== "up" || !event.isClick || event.button !== "left") return event.type === "move" && !isAnyButtonPressed(event);
+    if (placement) this.add(placing, placement, event.isShiftDown);
     return false;
   }
 
@@ -47,15 +47,15 @@ export class Placer {
   }
 
   private onWallPointer(placing: Placing, event: ToolEvent): boolean {
-    const position = this.snapToGround(event.x, event.y, event.ctrl);
+    const position = this.snapToGround(event.x, event.y, event.isCtrlDown);
     if (event.type === "down" && event.button === "left" && !this.hasFirstEnd) this.wallStart = position;
     const placement = this.wallStart && position && wallPlacementBetween(this.wallStart, position);
-    if (event.type === "move" && !event.middle && !event.right) {
+    if (event.type === "move" && !event.isMiddleDown && !event.isRightDown) {
       this.showGhost(placing, placement ?? (position && { pose: [...position, 0, 0, 0, 0], size: [0.1, 0.1, 1] }));
       return true;
     }
-    if (event.type !== "up" || event.button !== "left") return event.left;
-    if (event.click && !this.hasFirstEnd) this.hasFirstEnd = this.wallStart !== null;
+    if (event.type !== "up" || event.button !== "left") return event.isLeftDown;
+    if (event.isClick && !this.hasFirstEnd) this.hasFirstEnd = this.wallStart !== null;
     else {
       if (placement) this.add(placing, placement, true);
       this.wallStart = null;
@@ -71,7 +71,7 @@ export class Placer {
   }
 
   private placementAt({ kind }: Placing, event: ToolEvent): Placement | null {
-    const position = this.snapToGround(event.x, event.y, event.ctrl);
+    const position = this.snapToGround(event.x, event.y, event.isCtrlDown);
     return position && placementAt(kind, position);
   }
 
@@ -95,6 +95,6 @@ export class Placer {
   }
 }
 
-function isAnyButtonPressed({ left, middle, right }: ToolEvent): boolean {
-  return left || middle || right;
+function isAnyButtonPressed({ isLeftDown, isMiddleDown, isRightDown }: ToolEvent): boolean {
+  return isLeftDown || isMiddleDown || isRightDown;
 }

@@ -42,7 +42,7 @@ export interface CellLook {
   palette: Uint8Array;
   alpha: number;
   /** Whether some colors of the palette are transparent. */
-  isSeeThrough: boolean;
+  isTranslucent: boolean;
   /** Whether the plane is drawn before everything else, which then covers it regardless of depth. */
   isBehind: boolean;
   /** The render order: among coplanar planes, the one with the higher order covers the others. */
@@ -82,12 +82,12 @@ export class CellPlane {
     this.look = look;
     this.palette.value.image.data?.set(look.palette);
     this.palette.value.needsUpdate = true;
-    const isSeeThrough = look.alpha < MIN_OPAQUE_ALPHA || look.isSeeThrough;
+    const isTranslucent = look.alpha < MIN_OPAQUE_ALPHA || look.isTranslucent;
     for (const { material } of this.parts) {
       // A plane drawn behind must precede transparent objects, too: it is blended, but does not count as transparent.
-      material.transparent = isSeeThrough && !look.isBehind;
+      material.transparent = isTranslucent && !look.isBehind;
       material.blending = CustomBlending;
-      material.depthWrite = !isSeeThrough && !look.isBehind;
+      material.depthWrite = !isTranslucent && !look.isBehind;
       material.depthTest = !look.isBehind;
       const alpha = material.uniforms["alpha"];
       if (alpha) alpha.value = look.alpha;

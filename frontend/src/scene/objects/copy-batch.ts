@@ -43,8 +43,8 @@ export interface CopyHit {
 /**
  * Many copies of one shape in one draw call, each with its own matrix, color, gray and alpha.
  *
- * Call `begin(capacity)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have an
- * index, normals and colors (`paint` of geometries.ts), which are multiplied by each copy's color.
+ * Call `begin(capacity)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have
+ * an index, normals and colors (`paint` of geometries.ts), which are multiplied by each copy's color.
  *
  * The vertices of all copies are in one buffer, and each finds its matrix in a texture. GPU instancing would be
  * simpler, but software renderers take some 50 microseconds for each instance: 500 frames would be drawn at 6 frames a
@@ -56,7 +56,7 @@ export class CopyBatch {
   private readonly slots: { value: DataTexture };
   private capacity = 0;
   private count = 0;
-  private isSeeThrough = false;
+  private isTranslucent = false;
   /** The contents of the slots of all copies. */
   private allSlots = new Float32Array(0);
   /** The copies in the slots; null for all in their order. */
@@ -93,7 +93,7 @@ export class CopyBatch {
   /** Removes all copies; at most `capacity` will be added. */
   begin(capacity: number): void {
     this.count = 0;
-    this.isSeeThrough = false;
+    this.isTranslucent = false;
     this.slotOrder = null;
     if (capacity <= this.capacity) return;
     this.capacity = Math.ceil(capacity * 1.25);
@@ -110,7 +110,7 @@ export class CopyBatch {
    */
   add(matrix: Matrix4, gray = 0, alpha = 1, color = WHITE): void {
     writeSlot(this.allSlots, this.count, matrix, color, gray, alpha);
-    this.isSeeThrough ||= alpha < 1;
+    this.isTranslucent ||= alpha < 1;
     this.count += 1;
   }
 
@@ -120,9 +120,9 @@ export class CopyBatch {
     this.mesh.boundingBox = null;
     geometry.setDrawRange(0, this.count * (this.shape.index?.count ?? 0));
     this.isUploaded = false;
-    if (this.options.isOverlay || material.transparent === this.isSeeThrough) return;
-    material.transparent = this.isSeeThrough;
-    material.depthWrite = !this.isSeeThrough;
+    if (this.options.isOverlay || material.transparent === this.isTranslucent) return;
+    material.transparent = this.isTranslucent;
+    material.depthWrite = !this.isTranslucent;
     material.needsUpdate = true;
   }
 
@@ -185,7 +185,7 @@ export class CopyBatch {
       sphere.copy(shapeSphere).applyMatrix4(this.matrixOf(copy, matrix).premultiply(view));
       if (frustum.intersectsSphere(sphere)) copies.push({ copy, viewZ: sphere.center.z });
     }
-    if (this.isSeeThrough && !this.options.isOverlay) copies.sort((a, b) => a.viewZ - b.viewZ);
+    if (this.isTranslucent && !this.options.isOverlay) copies.sort((a, b) => a.viewZ - b.viewZ);
     return copies.map(({ copy }) => copy);
   }
 

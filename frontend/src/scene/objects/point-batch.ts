@@ -34,7 +34,7 @@ export class PointBatch {
     return this.positions.length / 3;
   }
 
-  /** Sets the points, x y z of each in m; `isTranslucent` if some colors have less than full alpha. */
+  /** Sets the points, x y z of each in m; `hasTranslucentColors` if some have less than full alpha. */
   setPoints(positions: Float32Array, colors: Uint8Array, hasTranslucentColors: boolean): void {
     this.positions = positions;
     this.colors = colors;
@@ -59,7 +59,7 @@ export class PointBatch {
       style: look.style,
       isTinted: this.colors.length > 0,
       hasQuads: look.style !== "Points" && this.count <= MAX_QUAD_POINTS,
-      isSeeThrough: look.alpha < MIN_OPAQUE_ALPHA || this.hasTranslucentColors,
+      isTranslucent: look.alpha < MIN_OPAQUE_ALPHA || this.hasTranslucentColors,
     };
   }
 

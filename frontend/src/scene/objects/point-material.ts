@@ -24,13 +24,13 @@ export interface PointVariant {
   isTinted: boolean;
   /** Whether each point is a quad; otherwise it is a point of the graphics library, whose size is limited. */
   hasQuads: boolean;
-  isSeeThrough: boolean;
+  isTranslucent: boolean;
 }
 
 // A point is drawn on a square that faces the camera and contains it. `place` is the position of a fragment on that
-// square, -1 to 1; `halfSide` is half the side of the square, m. Solid styles trace the ray through the fragment into the
-// point. All other values are constant over a point and therefore flat: interpolation makes software renderers a fifth
-// slower per point.
+// square, -1 to 1; `halfSide` is half the side of the square, m. Solid styles trace the ray through the fragment into
+// the point. All other values are constant over a point and therefore flat: interpolation makes software renderers a
+// fifth slower per point.
 const VERTEX_SHADER = /* glsl */ `
   uniform vec3 extent;
   uniform vec3 color;
@@ -161,7 +161,7 @@ const DEFINES: Readonly<Record<PointStyle, Record<string, string>>> = {
 };
 
 /** Returns the material of a variant; `setLook` and `setViewport` set its uniforms. */
-export function createPointMaterial({ style, isTinted, hasQuads, isSeeThrough }: PointVariant): ShaderMaterial {
+export function createPointMaterial({ style, isTinted, hasQuads, isTranslucent }: PointVariant): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: VERTEX_SHADER,
@@ -175,8 +175,8 @@ export function createPointMaterial({ style, isTinted, hasQuads, isSeeThrough }:
       alpha: { value: 1 },
       viewport: { value: [1, 1] },
     },
-    transparent: isSeeThrough,
-    depthWrite: !isSeeThrough,
+    transparent: isTranslucent,
+    depthWrite: !isTranslucent,
   });
 }
 

@@ -85,11 +85,11 @@ export class ThinLines {
 
 /** Concatenates arrays. */
 export function concatenate(parts: readonly Float32Array[]): Float32Array {
-  const concatenated = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
+  const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
   let offset = 0;
   for (const part of parts) {
-    concatenated.set(part, offset);
+    result.set(part, offset);
     offset += part.length;
   }
-  return concatenated;
+  return result;
 }

@@ -25,9 +25,9 @@ export interface LinkStyle {
 /** Draws a part of a robot at another pose than that of its description. */
 export interface Displacement {
   /** Changes the pose of a link in the fixed frame. */
-  readonly link?: (name: string, matrix: Matrix4) => void;
-  /** Moves a shape of a link: the one with index `among` among the shapes at `from` in the link. */
-  readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly index: number; readonly from: Matrix4; readonly to: Matrix4 };
+  readonly moveLink?: (name: string, matrix: Matrix4) => void;
+  /** Moves a shape of a link: the one with this `index` among the shapes at `from` in the link. */
+  readonly movedShape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly index: number; readonly from: Matrix4; readonly to: Matrix4 };
 }
 
 /** In contrast mode: the factor for the visuals' alpha, and the color and alpha of collisions. */
@@ -148,7 +148,7 @@ export class LinkDrawing {
   }
 
   /** Draws one of its shapes at another pose; null restores all. */
-  displaceShape(displaced: Displacement["shape"] | null): void {
+  displaceShape(displaced: Displacement["movedShape"] | null): void {
     for (const shape of [...this.visuals, ...this.collisions]) shape.displace(null);
     const { style } = this;
     // Show a collision that is being moved even if collisions are hidden.

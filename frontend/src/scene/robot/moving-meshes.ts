@@ -15,10 +15,10 @@ import { PICKABLE_LAYER } from "../layers";
 import type { LodMesh } from "../meshes/lod-mesh";
 import { createLitSlotMaterial, createSlotTexture, writeSlot } from "../objects/slot-material";
 
-/** The largest error that is not noticed in a moving frame, in its pixels. */
+/** The maximum error that users do not notice in a moving frame, in its pixels. */
 const MAX_ERROR_PX = 1;
 
-/** The moving frame for which stand-ins are drawn. */
+/** The frame during motion for which LOD meshes are drawn. */
 export interface MovingView {
   readonly camera: Camera;
   /** The height in pixels of the frame, which may be larger than those of the screen. */
@@ -33,15 +33,13 @@ export interface MovingPiece {
 }
 
 /**
- * Draws all meshes of a moving robot in one draw call, each with as few triangles as look the same. Software renderers
+ * Draws all meshes of a moving robot in one draw call, each with the fewest triangles that look the same. Software renderers
  * take some 0.3 microseconds for each triangle, and 100 for each draw call.
  */
 export class MovingMeshes {
   private mesh: Mesh<BufferGeometry, ReturnType<typeof createLitSlotMaterial>> | null = null;
   private readonly slots: { value: DataTexture } = { value: createSlotTexture(0) };
-  /**
-   * The contents of the buffers: the pieces' stand-ins, the index of the first vertex of each, and the levels drawn.
-   */
+  /** In the buffers: the LOD meshes of the pieces, the index of the first vertex of each, and the levels drawn. */
   private bufferedMeshes: readonly LodMesh[] = [];
   private firstVertices: number[] = [];
   private levels: readonly (number | null)[] = [];
@@ -61,8 +59,8 @@ export class MovingMeshes {
     return { pieces, triangles: (this.mesh?.geometry.drawRange.count ?? 0) / 3 };
   }
 
-  /** Draws pieces instead of meshes, until `end`. */
-  begin(pieces: readonly MovingPiece[], meshes: readonly Mesh[], view: MovingView): void {
+  /** Draws pieces instead of meshes, until `restoreMeshes`. */
+  replaceMeshes(pieces: readonly MovingPiece[], meshes: readonly Mesh[], view: MovingView): void {
     const mesh = this.fillBuffers(pieces);
     pieces.forEach(({ matrix, color }, slot) => writeSlot(this.texels, slot, matrix, color));
     this.slots.value.needsUpdate = true;
@@ -75,14 +73,14 @@ export class MovingMeshes {
     this.parent.add(mesh);
   }
 
-  end(): void {
+  restoreMeshes(): void {
     this.mesh?.removeFromParent();
     for (const mesh of this.hiddenMeshes) mesh.layers.enable(0);
     this.hiddenMeshes = [];
   }
 
   dispose(): void {
-    this.end();
+    this.restoreMeshes();
     this.mesh?.geometry.dispose();
     this.mesh?.material.dispose();
     this.slots.value.dispose();
@@ -154,7 +152,7 @@ export function chooseLevels(pieces: readonly MovingPiece[], { camera, height }:
   const isPerspective = elements[11] !== 0;
   const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);
   const [viewMatrix, center, boundingSphere] = [new Matrix4(), new Vector3(), new Sphere()];
-  return pieces.map(({ lodMesh: { sphere: [x, y, z, radius], levels }, matrix }) => {
+  return pieces.map(({ lodMesh: { boundingSphere: [x, y, z, radius], levels }, matrix }) => {
     const scale = matrix.getMaxScaleOnAxis();
     viewMatrix.multiplyMatrices(camera.matrixWorldInverse, matrix);
     boundingSphere.set(center.set(x, y, z).applyMatrix4(viewMatrix), radius * scale);

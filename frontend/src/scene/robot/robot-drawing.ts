@@ -124,8 +124,8 @@ export class RobotDrawing {
   }
 
   /**
-   * Applies the display's properties. `isContrastHigh` draws collisions over pale visuals; `overrideOf` returns the colors that
-   * replace those of a link.
+   * Applies the display's properties. `isContrastHigh` draws collisions over pale visuals; `overrideOf` returns the
+   * colors that replace those of a link.
    */
   applyStyle(rows: PropertyRows, isContrastHigh: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
     this.pool.lighting = lighting;
@@ -147,7 +147,7 @@ export class RobotDrawing {
     this.extras.updatePoses((name) => this.links.get(name)?.pose ?? null);
   }
 
-  displaceShape(displaced: Displacement["shape"] | null): void {
+  displaceShape(displaced: Displacement["movedShape"] | null): void {
     for (const link of this.links.values()) link.displaceShape(displaced?.link === link.link.name ? displaced : null);
   }
 
@@ -156,14 +156,16 @@ export class RobotDrawing {
     this.solids.chooseDetail(camera);
   }
 
-  /** Draws the meshes of a moving robot with fewer triangles where the difference is not visible; null restores them. */
+  /**
+   * Draws the meshes of a moving robot with fewer triangles where the difference is not visible; null restores them.
+   */
   simplify(view: MovingView | null): void {
-    this.movingMeshes.end();
+    this.movingMeshes.restoreMeshes();
     const { lodMeshes } = this.meshes;
     if (!view || !lodMeshes || this.pool.isLit) return;
     const [pieces, meshes]: [MovingPiece[], Mesh[]] = [[], []];
     const results = [...this.links.values()].map((link) => link.addPieces(lodMeshes, meshes, pieces));
-    if (pieces.length > 0 && results.every((isComplete) => isComplete)) this.movingMeshes.begin(pieces, meshes, view);
+    if (pieces.length > 0 && results.every((isComplete) => isComplete)) this.movingMeshes.replaceMeshes(pieces, meshes, view);
   }
 
   pick(ray: Raycaster): Hit | null {

@@ -120,8 +120,8 @@ export class ShapeDrawing {
   }
 
   /**
-   * Applies materials; `alpha` includes that of the robot and the link, and `isLost` means RViz's white of links without
-   * a transform.
+   * Applies materials; `alpha` includes that of the robot and the link, and `isLost` means RViz's white of links
+   * without a transform.
    *
    * @param override - replaces all colors and textures.
    */
@@ -141,9 +141,9 @@ export class ShapeDrawing {
   }
 
   /**
-   * Adds the meshes that have stand-ins, and the pieces of these stand-ins.
+   * Adds the meshes that have LOD meshes, and the pieces of these LOD meshes.
    *
-   * @returns whether all requested stand-ins are available.
+   * @returns whether all requested LOD meshes are available.
    */
   addPieces(lodMeshes: LodMeshes, meshes: Mesh[], pieces: ShapePiece[]): boolean {
     let isComplete = true;
@@ -151,7 +151,7 @@ export class ShapeDrawing {
     for (const { mesh } of this.parts) {
       const materials = [mesh.material].flat();
       if (!materials.every(isPlain)) continue;
-      const groupMeshes = lodMeshes.lodMeshesOf(mesh.geometry);
+      const groupMeshes = lodMeshes.getOrRequest(mesh.geometry);
       isComplete &&= groupMeshes !== null;
       if (!groupMeshes || groupMeshes.length === 0) continue;
       const matrix = new Matrix4().multiplyMatrices(this.root.matrix, mesh.matrix);

@@ -27,8 +27,8 @@ interface SphereCopy {
 
 /**
  * Draws opaque boxes, cylinders, cones, spheres and planes. Call `begin`, `add` and `end` as with `CopyBatch`, and
- * `chooseDetail` before each frame. Spheres have ten times the vertices of the others, which without a GPU took two fifths of
- * the time of a frame: those that look small are drawn with fewer.
+ * `chooseDetail` before each frame. Spheres have ten times the vertices of the others, which without a GPU took two
+ * fifths of the time of a frame: those that look small are drawn with fewer.
  */
 export class Solids {
   private readonly batches: ReadonlyMap<SolidKind, CopyBatch>;

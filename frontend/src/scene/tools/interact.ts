@@ -31,7 +31,7 @@ export class InteractTool implements SceneTool {
   }
 
   onPointer(event: ToolEvent): void {
-    const isPressed = event.left || event.middle || event.right;
+    const isPressed = event.isLeftDown || event.isMiddleDown || event.isRightDown;
     if (this.heldObject) {
       if (event.type !== "leave") this.send(event.type, event, this.heldObject);
       if (event.type === "up" && !isPressed) this.release(event);

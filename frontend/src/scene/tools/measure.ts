@@ -42,7 +42,7 @@ export class MeasureTool implements SceneTool {
     const point = this.context.stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
     if (this.isMeasuring && point) this.draw(point);
-    if (event.type === "up" && event.button === "left") this.onRelease(point, event.click);
+    if (event.type === "up" && event.button === "left") this.onRelease(point, event.isClick);
     if (event.type === "up" && event.button === "right") this.clear();
     this.showLength();
   }

@@ -36,7 +36,7 @@ export class PoseTool implements SceneTool {
     if (event.type === "down" && event.button === "left") {
       this.position = picker.groundAt(event.x, event.y);
       this.yaw = 0;
-    } else if (event.type === "move" && event.left && this.position) {
+    } else if (event.type === "move" && event.isLeftDown && this.position) {
       const target = picker.groundAt(event.x, event.y);
       if (target) this.aim(this.position, target);
     } else if (event.type === "up" && event.button === "left" && this.position) {

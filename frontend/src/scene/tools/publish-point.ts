@@ -18,7 +18,7 @@ export class PublishPointTool implements SceneTool {
     this.context.setCursor(point ? "crosshair" : "default");
     this.context.setHint(point ? strings.tools.hints.point(formatPoint(point)) : strings.tools.hints.pointNowhere);
     if (event.type !== "up" || event.button !== "left") return;
-    if (!point && event.click) this.context.showNotice(strings.tools.hints.nothingThere);
+    if (!point && event.isClick) this.context.showNotice(strings.tools.hints.nothingThere);
     if (!point || !state) return;
     const [x, y, z] = point;
     session.connection.send({ type: "point_chosen", tool: state.id, x, y, z });

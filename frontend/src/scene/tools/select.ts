@@ -30,9 +30,9 @@ export class SelectTool implements SceneTool {
   }
 
   onPointer(event: ToolEvent): void {
-    if (event.type === "down") this.isMovingCamera = event.alt;
+    if (event.type === "down") this.isMovingCamera = event.isAltDown;
     if (this.isMovingCamera || event.type === "wheel") {
-      this.cameraTool.onPointer({ ...event, click: false });
+      this.cameraTool.onPointer({ ...event, isClick: false });
       this.context.setHint(strings.tools.hints.select);
       return;
     }
@@ -40,11 +40,11 @@ export class SelectTool implements SceneTool {
     const pointer = new Vector2(event.x, event.y);
     if (event.type === "down" && event.button === "left") {
       this.dragStart = pointer;
-    } else if (event.type === "move" && this.dragStart && event.left) {
+    } else if (event.type === "move" && this.dragStart && event.isLeftDown) {
       this.draw(this.dragStart, pointer);
     } else if (event.type === "up" && event.button === "left" && this.dragStart) {
-      const mode: SelectionMode = event.shift ? "add" : event.ctrl ? "remove" : "replace";
-      if (event.click) stage.picker.selectAt(event.x, event.y, mode);
+      const mode: SelectionMode = event.isShiftDown ? "add" : event.isCtrlDown ? "remove" : "replace";
+      if (event.isClick) stage.picker.selectAt(event.x, event.y, mode);
       else stage.picker.selectBox(this.dragStart, pointer, mode);
       this.endDrag();
     }

@@ -174,8 +174,8 @@ export class Modeling {
   change(changes: readonly Change[]): void {
     if (changes.length === 0) return;
     if (changes.some(({ new_name }) => typeof new_name === "string")) this.selectsNew = true;
-    const unchanged = { pose: null, size: null, new_name: null, static: null, color: null };
-    this.connection.send({ type: "change_entities", changes: changes.map((change) => ({ ...unchanged, ...change })) });
+    const unchangedFields = { pose: null, size: null, new_name: null, static: null, color: null };
+    this.connection.send({ type: "change_entities", changes: changes.map((change) => ({ ...unchangedFields, ...change })) });
   }
 
   copy(): void {

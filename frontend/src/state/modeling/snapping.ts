@@ -20,7 +20,7 @@ export class Snapping {
   private length: number;
   private angle = 15;
 
-  /** `key` is the storage key, `usual` the default. */
+  /** `key` is the storage key; `defaults` apply until the user changes the settings, with a length in m. */
   constructor(
     private readonly storage: TextStorage,
     private readonly key = STORAGE_KEY,

@@ -36,8 +36,8 @@ export class LogState {
   private pendingLines: LogLine[] = [];
   private isOpen = false;
   /**
-   * Whether the next records are the first of a connection: the server starts with past records, and the page may already
-   * have some of them.
+   * Whether the next records are the first of a connection: the server starts with past records, and the page may
+   * already have some of them.
    */
   private isFirstBatch = true;
 

@@ -4,7 +4,7 @@ export type TimeSource = "received" | "stamp";
 const INITIAL_CAPACITY = 1024;
 /** The maximum number of samples: ten minutes at 1 kHz. */
 const MAX_SAMPLES = 600_000;
-/** Stamps that go back by more than this started over: simulated time was reset, or a recording restarted. */
+/** If stamps go back by more than this, simulated time was reset or a recording started again. */
 const RESET_THRESHOLD_S = 1;
 
 /** The samples of a series, the newest last; the oldest are dropped when there are too many. */

@@ -106,7 +106,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** Sends the current motion, and repeats that at the rate. */
+  /** Sends the current motion repeatedly, at the configured rate. */
   private drive(): void {
     this.send(this.motion);
     this.timer = window.setTimeout(() => this.drive(), 1000 / this.settings.rate);

@@ -9,6 +9,7 @@ import {
   createVectorValues,
   wrapYaw,
   type Drag,
+  type DragButtons,
   type PreviousView,
   type Motion,
   type MouseHint,
@@ -43,8 +44,8 @@ export class FpsController implements ViewController {
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
-    const { left, middle, right, dx, dy } = drag;
-    if (!left && !middle && !right) return {};
+    const { isLeftDown, isMiddleDown, isRightDown, dx, dy } = drag;
+    if (!isLeftDown && !isMiddleDown && !isRightDown) return {};
     switch (this.motionOf(drag)) {
       case "rotate3d":
         return {
@@ -82,11 +83,11 @@ export class FpsController implements ViewController {
     return createVectorValues("Position", transformPointToTarget(transformPointToFixed(readVector(values, "Position", START_POSITION), oldTarget), newTarget));
   }
 
-  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): FpsMotion {
-    if (left && !shift) return "rotate3d";
-    if (middle || left) return "moveXY";
-    if (right) return "moveZ";
-    return shift ? "moveXY" : "rotate3d";
+  motionOf({ isLeftDown, isMiddleDown, isRightDown, isShiftDown }: DragButtons): FpsMotion {
+    if (isLeftDown && !isShiftDown) return "rotate3d";
+    if (isMiddleDown || isLeftDown) return "moveXY";
+    if (isRightDown) return "moveZ";
+    return isShiftDown ? "moveXY" : "rotate3d";
   }
 
   hintFor(isShiftDown: boolean): MouseHint {

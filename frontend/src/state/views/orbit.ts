@@ -9,6 +9,7 @@ import {
   createVectorValues,
   wrapYaw,
   type Drag,
+  type DragButtons,
   type PreviousView,
   type Motion,
   type MouseHint,
@@ -52,7 +53,7 @@ export class OrbitController implements ViewController {
     const { distance, yaw, pitch } = readOrbit(values);
     switch (this.motionOf(drag)) {
       case "rotate3d":
-        if (!drag.left) return {};
+        if (!drag.isLeftDown) return {};
         return {
           Yaw: wrapYaw(yaw - drag.dx * RADIANS_PER_PIXEL),
           Pitch: clampPitch(pitch + drag.dy * RADIANS_PER_PIXEL),
@@ -97,11 +98,11 @@ export class OrbitController implements ViewController {
     return { ...createVectorValues("Focal Point", transformPointToTarget(transformPointToFixed(focal, oldTarget), newTarget)), ...yawChange };
   }
 
-  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
-    if (left && !shift) return "rotate3d";
-    if (middle || (left && shift)) return "moveXY";
-    if (right) return shift ? "moveZ" : "zoom";
-    return shift ? "moveXY" : "rotate3d";
+  motionOf({ isLeftDown, isMiddleDown, isRightDown, isShiftDown }: DragButtons): OrbitMotion {
+    if (isLeftDown && !isShiftDown) return "rotate3d";
+    if (isMiddleDown || (isLeftDown && isShiftDown)) return "moveXY";
+    if (isRightDown) return isShiftDown ? "moveZ" : "zoom";
+    return isShiftDown ? "moveXY" : "rotate3d";
   }
 
   hintFor(isShiftDown: boolean): MouseHint {
@@ -109,8 +110,8 @@ export class OrbitController implements ViewController {
   }
 
   /** Moves the focal point with the pointer in the camera's plane. */
-  protected pan(values: ViewValues, { dx, dy, height, left, middle }: Drag): ViewValues {
-    if (!left && !middle) return {};
+  protected pan(values: ViewValues, { dx, dy, height, isLeftDown, isMiddleDown }: Drag): ViewValues {
+    if (!isLeftDown && !isMiddleDown) return {};
     const { distance, focal } = readOrbit(values);
     const metersPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.max(1, height);
     const { right, up } = this.computeCamera(values);

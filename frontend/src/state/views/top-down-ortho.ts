@@ -5,6 +5,7 @@ import {
   readNumber,
   RADIANS_PER_PIXEL,
   type Drag,
+  type DragButtons,
   type PreviousView,
   type Motion,
   type MouseHint,
@@ -46,8 +47,8 @@ export class TopDownOrthoController implements ViewController {
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
-    const { left, middle, right, dx, dy } = drag;
-    if (!left && !middle && !right) return {};
+    const { isLeftDown, isMiddleDown, isRightDown, dx, dy } = drag;
+    if (!isLeftDown && !isMiddleDown && !isRightDown) return {};
     const scale = readScale(values);
     switch (this.motionOf(drag)) {
       case "rotate2d":
@@ -85,11 +86,11 @@ export class TopDownOrthoController implements ViewController {
     return { X: x, Y: y };
   }
 
-  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): MapMotion {
-    if (left && !shift) return "rotate2d";
-    if (middle || left) return "moveXY";
-    if (right) return "zoom";
-    return shift ? "moveXY" : "rotate2d";
+  motionOf({ isLeftDown, isMiddleDown, isRightDown, isShiftDown }: DragButtons): MapMotion {
+    if (isLeftDown && !isShiftDown) return "rotate2d";
+    if (isMiddleDown || isLeftDown) return "moveXY";
+    if (isRightDown) return "zoom";
+    return isShiftDown ? "moveXY" : "rotate2d";
   }
 
   hintFor(isShiftDown: boolean): MouseHint {

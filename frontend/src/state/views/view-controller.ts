@@ -7,16 +7,19 @@ export type ViewValues = Readonly<Record<string, PropertyValue>>;
 
 /** A movement of the mouse in pixels, with its buttons. */
 export interface Drag extends ViewSize {
-  readonly left: boolean;
-  readonly middle: boolean;
-  readonly right: boolean;
-  readonly shift: boolean;
+  readonly isLeftDown: boolean;
+  readonly isMiddleDown: boolean;
+  readonly isRightDown: boolean;
+  readonly isShiftDown: boolean;
   /** The previous position, from the upper left corner. */
   readonly x: number;
   readonly y: number;
   readonly dx: number;
   readonly dy: number;
 }
+
+/** The mouse buttons and the key of a `Drag` that decide on the motion. */
+export type DragButtons = Pick<Drag, "isLeftDown" | "isMiddleDown" | "isRightDown" | "isShiftDown">;
 
 /** The motion of the camera caused by the mouse; each has its own cursor. */
 export type Motion = "rotate3d" | "rotate2d" | "moveXY" | "moveZ" | "zoom";
@@ -53,7 +56,7 @@ export interface ViewController {
   mimic(previous: PreviousView): ViewValues;
   /** Converts the values to another target frame without moving the camera. */
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues;
-  motionOf(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): Motion;
+  motionOf(drag: DragButtons): Motion;
   hintFor(isShiftDown: boolean): MouseHint;
 }
 

@@ -2,7 +2,7 @@ import { intersectGround, castRay, type Camera, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
 import { add, distanceBetween, length, scale, subtract, type Bounds, type Vector } from "./vector";
 import { lookFromAbove, orbitFrom, OrbitController, readOrbit, type OrbitMotion } from "./orbit";
-import { createVectorValues, type Drag, type PreviousView, type MouseHint, type ViewValues } from "./view-controller";
+import { createVectorValues, type Drag, type DragButtons, type PreviousView, type MouseHint, type ViewValues } from "./view-controller";
 
 /**
  * The share of the distance by which the camera is raised, which places the focal point in the lower half of the view.
@@ -51,7 +51,7 @@ export class XYOrbitController extends OrbitController {
     return focal ? orbitFrom(focal, viewpoint) : this.zero();
   }
 
-  override motionOf(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
+  override motionOf(drag: DragButtons): OrbitMotion {
     const motion = super.motionOf(drag);
     return motion === "moveZ" ? "zoom" : motion;
   }
@@ -62,7 +62,7 @@ export class XYOrbitController extends OrbitController {
 
   /** Moves the ground with the pointer. */
   protected override pan(values: ViewValues, drag: Drag): ViewValues {
-    if (!drag.left && !drag.middle) return {};
+    if (!drag.isLeftDown && !drag.isMiddleDown) return {};
     const camera = this.computeCamera(values);
     const start = intersectGround(castRay(camera, drag.x, drag.y, drag));
     const end = intersectGround(castRay(camera, drag.x + drag.dx, drag.y + drag.dy, drag));

@@ -12,7 +12,7 @@ export class Resampler {
   private readonly halfWidth: number;
   private readonly cutoff: number;
   private bufferedSamples: Float32Array;
-  /** The time of the next output sample, in samples of `buffered`. */
+  /** The time of the next output sample, in samples of `bufferedSamples`. */
   private position: number;
 
   constructor(inputRate: number, outputRate: number) {

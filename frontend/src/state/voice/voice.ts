@@ -5,7 +5,9 @@ import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 
-/** The time for which the microphone stays open after the button was released, ms: a word may be lost while it opens. */
+/**
+ * The time for which the microphone stays open after the button was released, ms: a word may be lost while it opens.
+ */
 const OPEN_AFTER_USE_MS = 60_000;
 const MAX_HISTORY_LINES = 100;
 /**
@@ -180,8 +182,8 @@ export class VoiceState {
   }
 
   /**
-   * Opens the microphone for a recording; `hasBegun` is called before the first sound is sent, and cancels the recording
-   * by returning false.
+   * Opens the microphone for a recording; `hasBegun` is called before the first sound is sent, and cancels the
+   * recording by returning false.
    */
   async startRecording(onBegin: () => boolean): Promise<boolean> {
     this.speaker.stopSpeaking();
