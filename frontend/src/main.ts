@@ -99,7 +99,7 @@ function start(app: HTMLElement): void {
   const tokens = new Tokens(createAddressBar(), openBrowserStorage());
   const connection = new Connection(createSocketUrl(location.href, ownKey, language), tokens);
   const tokenScreen = new TokenScreen(connection, tokens, app);
-  // Connect before drawing anything: the answer takes a moment.
+  // Connect before drawing anything, because the answer takes some time.
   connection.open();
   // Browsers slow down the timers of hidden pages, the retry timer among them.
   document.addEventListener("visibilitychange", () => {
@@ -275,7 +275,7 @@ function followAvailability(dock: Dock, session: Session): void {
 
 /**
  * Returns a function that opens a panel when it has content, and closes it when it no longer has any. It closes the
- * panel after a moment: a program that is restarted soon has content again, and the panel then stays where the user
+ * panel after a delay: a program that is restarted soon has content again, and the panel then stays where the user
  * put it.
  */
 function openWhile(dock: Dock, id: PanelId, hasContent: () => boolean): () => void {

@@ -43,7 +43,7 @@ beforeEach(() => {
       interaction = next;
     },
   } as unknown as Stage;
-  const view = { controller: new OrbitController(), drag: () => (dragCount += 1), wheel: () => undefined };
+  const view = { controller: new OrbitController(), drag: () => (dragCount += 1), handleWheel: () => undefined };
   const state = { rows: { bool: () => true } };
   const doNothing = (): void => undefined;
   tool = new InteractTool({ stage, session: { view }, state, setHint: doNothing, setCursor: doNothing, finish: doNothing } as unknown as ToolContext);

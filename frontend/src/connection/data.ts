@@ -10,10 +10,10 @@ export interface DisplayData {
   key: string;
   /** The frame that the content is in; empty for the fixed frame. */
   frame: string;
-  /** Time of the content, s. */
+  /** The time of the content, s. */
   stamp: number;
   /**
-   * Pose of `frame` in the fixed frame at the time of the content, m and xyzw; null if the content follows the frame.
+   * The pose of `frame` in the fixed frame at the time of the content, m and xyzw; null if the content follows `frame`.
    */
   pose: number[] | null;
   content: DataContent;

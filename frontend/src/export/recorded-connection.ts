@@ -57,7 +57,8 @@ export class RecordedConnection extends Connection {
   private fitSizes({ diagonal, ground }: RobotMeasured): void {
     const { messages, awaits_size, spacing } = this.recording;
     const displays = messages.find((message) => message.type === "tree")?.displays ?? [];
-    const findProperty = (drawing: string, name: string): Property | undefined => displays.find((display) => display.drawing === drawing)?.properties.find((property) => property.name === name);
+    const findProperty = (drawing: string, name: string): Property | undefined =>
+      displays.find((display) => display.drawing === drawing)?.properties.find((property) => property.name === name);
     const setValue = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
     const height = findProperty(GRID_CLASS, "Offset")?.children.find(({ name }) => name === "Z");
     if (height?.value === 0 && ground !== 0) setValue(height, ground);

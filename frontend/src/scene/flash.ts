@@ -7,10 +7,10 @@ import type { Viewport } from "./viewport";
 const FLASH_COLOR = 0xff9d3c;
 const FILL_ALPHA = 0.55;
 const DURATION_MS = 1600;
-/** The time at full strength at the start, ms, because new meshes may take a moment to load. */
+/** The time at full strength at the start, ms, because new meshes may still be loading. */
 const FULL_STRENGTH_MS = 600;
 
-/** Highlights for a moment the links that an edit changed, or whose joints it moved. */
+/** Briefly highlights the links that an edit changed, or whose joints it moved. */
 export class Flash {
   private readonly outline: Outline;
   private flashes: { display: string; names: ReadonlySet<string>; startMs: number }[] = [];

@@ -2,7 +2,7 @@
 
 /** Outlined because the object is selected. */
 export const SELECTED_LAYER = 1;
-/** Highlighted for a moment. */
+/** Highlighted briefly. */
 export const FLASHING_LAYER = 2;
 /** Tested by rays, but drawn as part of a batch. */
 export const PICKABLE_LAYER = 3;

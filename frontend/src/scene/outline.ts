@@ -28,11 +28,11 @@ const FRAGMENT_SHADER = /* glsl */ `
   varying vec2 vUv;
   void main() {
     float inside = texture2D(mask, vUv).r;
-    float near = 0.0;
+    float dilated = 0.0;
     for (int x = -1; x <= 1; x++)
       for (int y = -1; y <= 1; y++)
-        near = max(near, texture2D(mask, vUv + vec2(x, y) * texel).r);
-    gl_FragColor = vec4(color, max((near - inside) * 0.95, inside * fill) * strength);
+        dilated = max(dilated, texture2D(mask, vUv + vec2(x, y) * texel).r);
+    gl_FragColor = vec4(color, max((dilated - inside) * 0.95, inside * fill) * strength);
   }
 `;
 /** Draws a line around the selected objects, also where they are hidden, and a tint over them. */

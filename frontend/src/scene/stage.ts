@@ -276,7 +276,9 @@ export class Stage {
     this.hasRobotSettled ||= isSettled && [...this.listRobots(), ...this.listWorlds()].some((model) => model.hasPose);
     if (isSettled && this.session.robot !== null) this.poselessSinceMs ??= now;
     this.setInitialView(isSettled);
-    const ownLight = this.listWorlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.listWorlds().length > 0 ? "Camera" : lighting, this.listRobots(), this.backgroundColor);
+    const robotLighting = this.listWorlds().length > 0 ? "Camera" : lighting;
+    const worldLight = this.listWorlds().find((world) => world.ownLight)?.ownLight;
+    const ownLight = worldLight ?? this.robotLight.update(robotLighting, this.listRobots(), this.backgroundColor);
     this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
     this.viewport.applyLight(ownLight);
     this.inspectLayer.update();
@@ -369,9 +371,7 @@ export class Stage {
   private onSelectionChanged(): void {
     const keys = new Map<string, Set<string>>();
     for (const { display, key } of this.session.selection.items) {
-      let displayKeys = keys.get(display);
-      if (!displayKeys) keys.set(display, (displayKeys = new Set()));
-      displayKeys.add(key);
+      keys.set(display, (keys.get(display) ?? new Set<string>()).add(key));
     }
     const noKeys: ReadonlySet<string> = new Set();
     for (const [id, { drawing }] of this.drawings) drawing.highlight?.(keys.get(id) ?? noKeys);

@@ -78,7 +78,18 @@ export class WorldHandling {
     const normal = event.isShiftDown ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
     const plane = new Plane().setFromNormalAndCoplanarPoint(normal, position);
     const point = position.clone().applyMatrix4(matrix.clone().invert());
-    this.currentGrab = { drawing, link, point, startPosition: position.clone(), plane, isPull: event.isShiftDown, lastSentMs: -Infinity, offset: new Vector3(), pointerPosition: position.clone(), timer: 0 };
+    this.currentGrab = {
+      drawing,
+      link,
+      point,
+      startPosition: position.clone(),
+      plane,
+      isPull: event.isShiftDown,
+      lastSentMs: -Infinity,
+      offset: new Vector3(),
+      pointerPosition: position.clone(),
+      timer: 0,
+    };
     if (event.isShiftDown) this.currentGrab.timer = window.setInterval(() => this.repeatPull(), REQUEST_INTERVAL_MS);
     this.stage.viewport.canvas.style.cursor = "grabbing";
     if (!event.isShiftDown) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);

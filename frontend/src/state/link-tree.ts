@@ -69,7 +69,11 @@ function findMatchingLinks(model: DescriptionModel, searchWords: readonly string
   for (const link of model.links.keys()) {
     const names = `${link} ${model.parentJointOf(link)?.name ?? ""}`.toLowerCase();
     if (!searchWords.every((word) => names.includes(word))) continue;
-    for (let ancestor: string | undefined = link; ancestor !== undefined && !matchingLinks.has(ancestor); ancestor = model.parentJointOf(ancestor)?.parent) matchingLinks.add(ancestor);
+    let ancestor: string | undefined = link;
+    while (ancestor !== undefined && !matchingLinks.has(ancestor)) {
+      matchingLinks.add(ancestor);
+      ancestor = model.parentJointOf(ancestor)?.parent;
+    }
   }
   return matchingLinks;
 }

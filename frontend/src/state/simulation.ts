@@ -60,7 +60,7 @@ export class SimulationState {
     this.connection.send({ type: "drag_model", model, begins: isStart, offset: [...offset] });
   }
 
-  /** Pushes a link for a moment: `force` in the world's frame, N; `point` in the link's frame, m. */
+  /** Pushes a link briefly: `force` in the world's frame, N; `point` in the link's frame, m. */
   push(link: string, point: readonly number[], force: readonly number[]): void {
     this.connection.send({ type: "push_link", link, point: [...point], force: [...force] });
   }

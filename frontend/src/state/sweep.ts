@@ -36,8 +36,8 @@ export class Sweep {
 }
 
 /**
- * Returns the position on the way from `start` to the upper limit, to the lower one and back; `part` of the way, 0 to
- * 1.
+ * Returns the position on the way from `start` to the upper limit, to the lower one and back; `progress` is the part of
+ * the way, 0 to 1.
  */
 export function roundTripPosition({ lower, upper }: Pick<JointControl, "lower" | "upper">, start: number, progress: number): number {
   const range = upper - lower;

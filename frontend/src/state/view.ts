@@ -239,8 +239,6 @@ export class ViewState {
     }
   }
 
-  // --- saved views -----------------------------------------------------------------------------------------------
-
   /** Adds the current view to the saved ones. */
   save(name: string): void {
     this.connection.send({ type: "save_view", view: { ...copyView(this.view), name } });
@@ -267,8 +265,6 @@ export class ViewState {
   remove(id: string): void {
     this.connection.send({ type: "remove_saved_view", id });
   }
-
-  // --------------------------------------------------------------------------------------------------------------
 
   /** Applies the view of a configuration once: a reconnect does not move the user's camera, but another file does. */
   private configure(view: View, revision: number, showsWholeRobot: boolean): void {

@@ -3,7 +3,7 @@ import { h } from "../dom";
 /** The number of rows drawn beyond both ends of the visible part, so that scrolling shows no gaps. */
 const OVERSCAN_ROWS = 12;
 
-/** A list of any length in which only the visible rows are elements; all rows have the same height. */
+/** A list of any length in which only the visible rows, which have the same height, are elements. */
 export class VirtualRows {
   readonly element: HTMLElement;
   /** The element that contains the rows, as high as all of them. */

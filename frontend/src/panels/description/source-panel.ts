@@ -188,9 +188,13 @@ export class SourcePanel implements Panel {
     const { expanded, origin } = this.findWrittenPlaces();
     const texts = strings.description.source;
     if (this.model) this.fillView(this.expandedView, this.session.description.textOf(display, EXPANDED_TEXT_KEY), createFocusHighlights(expanded), "expanded");
-    const text = this.file === "" ? null : this.session.description.textOf(this.requestedPlace?.file === this.file ? (this.requestedPlace.display ?? display) : display, this.file);
+    const displayOfFile = this.requestedPlace?.file === this.file ? (this.requestedPlace.display ?? display) : display;
+    const text = this.file === "" ? null : this.session.description.textOf(displayOfFile, this.file);
     const originMarks = origin?.file === this.file ? createFocusHighlights(origin) : [];
-    if (this.requestedPlace?.file === this.file) originMarks.push({ firstLine: this.requestedPlace.line, lastLine: this.requestedPlace.line, kind: this.requestedPlace.highlightKind });
+    if (this.requestedPlace?.file === this.file) {
+      const { line, highlightKind } = this.requestedPlace;
+      originMarks.push({ firstLine: line, lastLine: line, kind: highlightKind });
+    }
     const highlights = [...originMarks, ...this.createProblemMarks()];
     const isWorkingFile = this.file !== "" && (this.requestedPlace?.file !== this.file || (this.requestedPlace.display ?? display) === display);
     const isEdited = this.editor.show(isWorkingFile ? this.file : null, isWorkingFile ? highlights : [], this.pendingReveal.origin);

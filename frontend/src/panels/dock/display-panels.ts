@@ -130,7 +130,7 @@ export class DisplayPanels implements PanelHost {
     for (const entry of [...previousHeights, { group, height }]) entry.group.api.setSize({ height: entry.height });
   }
 
-  /** Returns the place of a new panel, after `count` others. */
+  /** Returns the place of a new panel, after `panelCount` others. */
   private choosePlacement({ replacesScene }: DisplayPanel, lastPanel: string | undefined, panelCount: number): Placement {
     const api = this.getApi();
     const form = formOf(api);

@@ -88,7 +88,8 @@ export class EditingPanel implements Panel {
     const { editing } = this.session;
     const isChosen = part === editing.chosenPart;
     const kind = texts.kinds[part.part];
-    const row = createButton(texts.choose(kind, part.title), () => editing.choosePart(part), "editing-part", h("strong", {}, kind), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
+    const title = part.part === "joint" || part.part === "axis" ? part.name : part.title;
+    const row = createButton(texts.choose(kind, part.title), () => editing.choosePart(part), "editing-part", h("strong", {}, kind), " ", h("span", {}, title));
     row.setAttribute("aria-pressed", String(isChosen));
     row.classList.toggle("selected", isChosen);
     return row;
@@ -112,7 +113,8 @@ export class EditingPanel implements Panel {
     if (file !== "") {
       const show = (): void => this.session.description.placeRequested.emit({ file, line });
       const text = `${shortenPath(file)}:${line}`;
-      this.placeBox.append(createButton(`${file}:${line}`, show, "place", createIcon("file"), text), h("code", { title: written }, written === "" ? texts.notWritten : written));
+      const placeButton = createButton(`${file}:${line}`, show, "place", createIcon("file"), text);
+      this.placeBox.append(placeButton, h("code", { title: written }, written === "" ? texts.notWritten : written));
     }
   }
 

@@ -6,7 +6,7 @@ import { LEVELS, levelOf, formatLine, type LogState } from "../../state/monitor/
 import { strings } from "../../strings";
 import { createTextField } from "../../widgets/controls";
 import { copyText } from "../../widgets/copy-text";
-import { VirtualList } from "../../widgets/virtual-list";
+import { FollowingList } from "../../widgets/following-list";
 import type { Panel } from "../panel";
 
 const ROW_HEIGHT_PX = 21;
@@ -16,7 +16,7 @@ export class LogPanel implements Panel {
   readonly id = "log";
   readonly icon = "log";
   readonly element: HTMLElement;
-  private readonly list: VirtualList<LogLine>;
+  private readonly list: FollowingList<LogLine>;
   private readonly nodeSelect = h("select", { class: "choice", title: strings.monitor.log.node, aria: { label: strings.monitor.log.node } });
   private readonly pauseButton: HTMLButtonElement;
   private readonly newestButton: HTMLButtonElement;
@@ -27,7 +27,7 @@ export class LogPanel implements Panel {
 
   constructor(private readonly state: LogState) {
     const texts = strings.monitor.log;
-    this.list = new VirtualList<LogLine>(ROW_HEIGHT_PX, (line) => this.createRow(line), () => this.updateNewestButton());
+    this.list = new FollowingList<LogLine>(ROW_HEIGHT_PX, (line) => this.createRow(line), () => this.updateNewestButton());
     this.list.element.setAttribute("role", "region");
     this.list.element.setAttribute("aria-label", texts.list);
     this.list.element.addEventListener("keydown", (event) => this.onKeyDown(event));

@@ -110,7 +110,9 @@ export class PlotPicker {
       row.addEventListener("click", () => this.chooseOffer(offer));
       return row;
     });
-    const emptyText = this.requestedTopic === null ? (this.topics.isKnown ? texts.noTopics : texts.requestingTopics) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
+    const noTopicsText = this.topics.isKnown ? texts.noTopics : texts.requestingTopics;
+    const noFieldsText = this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
+    const emptyText = this.requestedTopic === null ? noTopicsText : noFieldsText;
     this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, emptyText)]));
     this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.activeIndex}` : "");
     rows[this.activeIndex]?.scrollIntoView({ block: "nearest" });

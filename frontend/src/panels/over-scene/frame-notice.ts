@@ -7,7 +7,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
 const ROBOT_MODEL = "rviz_default_plugins/RobotModel";
-/** How long (ms) the notice waits for the frame: localization takes a moment to publish it. */
+/** How long (ms) the notice waits for the frame: localization publishes it only after its start. */
 const NOTICE_DELAY_MS = 3000;
 
 /**

@@ -67,7 +67,7 @@ export class SelectionCard {
     return foldButton;
   }
 
-  /** Replaces the plain trail with the calls and values, which the server sends a moment later. */
+  /** Replaces the plain trail with the calls and values, which the server sends later. */
   private show(provenance: LinkProvenance): void {
     const selectedLink = this.session.selection.selectedLink;
     if (selectedLink?.display !== provenance.display || selectedLink.link.name !== provenance.link) return;
@@ -101,7 +101,8 @@ function createPlace(link: LinkScene, showSource: (file: string, line: number) =
     "tool bare",
     createIcon("copy"),
   );
-  const placeButton = createButton(fullPlace, () => showSource(place.file, place.line), "place", createIcon("file"), formatPlace(shortenPath(place.file), place.line, place.column));
+  const shortPlace = formatPlace(shortenPath(place.file), place.line, place.column);
+  const placeButton = createButton(fullPlace, () => showSource(place.file, place.line), "place", createIcon("file"), shortPlace);
   return h("div", { class: "card-place" }, placeButton, copyButton);
 }
 

@@ -32,7 +32,8 @@ export class SimulationBar {
     const resetButton = createButton(texts.reset, () => simulation.sendControl("reset"), "scene-tool small", createIcon("reset"));
     const addButton = createButton(texts.spawn, () => this.openSpawnDialog(simulation.findFreePosition()), "scene-tool small", createIcon("plus"));
     this.modelButton = createButton(strings.modeling.startEditing, () => modeling.setActive(!modeling.isActive), "scene-tool small", createIcon("build"));
-    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factorText, this.timeText);
+    const children = [this.playButton, this.stepButton, resetButton, addButton, this.modelButton, this.factorText, this.timeText];
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: texts.label } }, ...children);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModelingBar(modeling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
     modeling.changed.on(() => this.show());

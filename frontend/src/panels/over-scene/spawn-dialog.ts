@@ -37,7 +37,7 @@ export class SpawnDialog {
       h("div", { class: "spawn-row" }, h("span", {}, texts.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
       this.message,
     ];
-    const dialogButtons = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.submit() }];
+    const dialogButtons = [{ label: strings.shell.cancel }, { label: texts.spawn, isPrimary: true, run: () => this.submit() }];
     this.dialog = new Dialog(texts.spawnTitle, rows, dialogButtons, "spawn-dialog");
     const unsubscribers = [
       modeling.modelsArrived.on((models) => {

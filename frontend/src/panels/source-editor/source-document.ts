@@ -19,12 +19,12 @@ class FormerText {
     this.changes = ChangeSet.empty(text.length);
   }
 
-  /** Returns the place in the present text of a place in the former one. */
+  /** Returns the position in the current text that corresponds to one in the former text. */
   toCurrentPosition(position: number): number {
     return this.changes.mapPos(Math.min(position, this.text.length));
   }
 
-  /** Returns the place in the former text of a place in the present one. */
+  /** Returns the position in the former text that corresponds to one in the current text. */
   toFormerPosition(position: number): number {
     return this.changes.invertedDesc.mapPos(position);
   }
@@ -122,11 +122,13 @@ export class SourceDocument {
     const { changes } = transaction;
     this.unsavedChanges = transaction.annotation(fromDisk) ?? this.unsavedChanges.compose(changes);
     if (this.writing) this.writing.changes = this.writing.changes.compose(changes);
-    for (const formerText of new Set([...this.sentTexts.values(), ...(this.describedText ? [this.describedText] : [])])) formerText.changes = formerText.changes.compose(changes);
+    const formerTexts = new Set(this.sentTexts.values());
+    if (this.describedText) formerTexts.add(this.describedText);
+    for (const formerText of formerTexts) formerText.changes = formerText.changes.compose(changes);
   }
 
   /**
-   * Takes over a new text of the file; returns the transaction that brings it into the editor, or null if there is none
+   * Adopts a new text of the file; returns the transaction that brings it into the editor, or null if there is none
    * or there is a conflict.
    */
   onDiskChanged(content: string, version: number): TransactionSpec | null {

@@ -127,7 +127,13 @@ export class VoicePanel implements Panel {
     const { history, partial } = this.voice;
     const texts = strings.voice;
     const createRow = (part: ConversationPart, text: string): HTMLElement =>
-      h("div", { class: `voice-said ${part}` }, h("span", { title: texts.parts[part] }, createIcon(PART_ICONS[part])), h("span", { class: "voice-part" }, texts.parts[part]), h("span", {}, text));
+      h(
+        "div",
+        { class: `voice-said ${part}` },
+        h("span", { title: texts.parts[part] }, createIcon(PART_ICONS[part])),
+        h("span", { class: "voice-part" }, texts.parts[part]),
+        h("span", {}, text),
+      );
     const rows = history.map(({ part, text }) => createRow(part, text));
     if (partial !== "") rows.push(createRow("partial", partial));
     const isAtEnd = this.historyBox.scrollTop + this.historyBox.clientHeight >= this.historyBox.scrollHeight - 4;

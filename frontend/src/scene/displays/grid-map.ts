@@ -104,7 +104,8 @@ function createSegments(content: GridSurface, pose: Matrix4): Float32Array {
   for (let i = 0; i < points.length; i += 3) position.fromArray(points, i).applyMatrix4(pose).toArray(positions, i);
   const segments: number[] = [];
   const connect = (firstCell: number, secondCell: number): void => {
-    if (hasCell(content, firstCell) && hasCell(content, secondCell)) segments.push(...positions.subarray(firstCell * 3, firstCell * 3 + 3), ...positions.subarray(secondCell * 3, secondCell * 3 + 3));
+    if (!hasCell(content, firstCell) || !hasCell(content, secondCell)) return;
+    segments.push(...positions.subarray(firstCell * 3, firstCell * 3 + 3), ...positions.subarray(secondCell * 3, secondCell * 3 + 3));
   };
   for (let row = 0; row < rows; row++) {
     for (let column = 0; column < columns; column++) {

@@ -10,7 +10,7 @@ export class Pacing {
     return this.timer !== undefined;
   }
 
-  /** Returns whether to update in a frame at this time; `interval` in ms, 0 for every frame. */
+  /** Returns whether to update in a frame at this time; `intervalMs`, 0 for every frame. */
   shouldUpdate(nowMs: number, intervalMs: number): boolean {
     const waitMs = this.lastUpdateMs + intervalMs - nowMs;
     if (waitMs <= 0) {

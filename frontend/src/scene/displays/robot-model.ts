@@ -33,7 +33,11 @@ export class RobotModelDrawing implements Drawing {
       if (robot?.display === display.id) this.setRobot(robot);
     };
     this.isContrastHigh = session.inspect.current.contrast;
-    this.unsubscribe = [session.robotChanged.on(setRobot), session.inspect.changed.on(() => this.onInspectChanged()), session.comparison.changed.on(() => this.onComparisonChanged())];
+    this.unsubscribe = [
+      session.robotChanged.on(setRobot),
+      session.inspect.changed.on(() => this.onInspectChanged()),
+      session.comparison.changed.on(() => this.onComparisonChanged()),
+    ];
     setRobot(session.robots.get(display.id));
   }
 

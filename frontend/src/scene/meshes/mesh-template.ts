@@ -49,8 +49,8 @@ export interface FlattenedMesh {
 }
 
 /**
- * Flattens the scene of a loader, whose textures must be loaded. `isOwn` distinguishes the file's materials from those
- * that the loader added.
+ * Flattens the scene of a loader, whose textures must be loaded. `isFromFile` distinguishes the file's materials
+ * from those that the loader added.
  */
 export function flatten(root: Object3D, isFromFile: (material: Material) => boolean): FlattenedMesh {
   root.updateMatrixWorld(true);
@@ -75,7 +75,7 @@ export function flatten(root: Object3D, isFromFile: (material: Material) => bool
  * @throws MeshError if nothing can be drawn.
  */
 export function createTemplate(format: string, { parts, nonFinite }: FlattenedMesh, problem: string | null): MeshTemplate {
-  if (nonFinite.every(({ totalTriangles: ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
+  if (nonFinite.every(({ totalTriangles }) => totalTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
   const problems = [problem, describeNonFinite(nonFinite)].filter((text) => text !== null);
   return { parts, problem: problems.join("; ") || null };
 }

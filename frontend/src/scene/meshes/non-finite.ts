@@ -30,7 +30,8 @@ export function collapseNonFinite(geometry: BufferGeometry): NonFiniteCounts {
   const isIndexBeyond = index !== null && index.array.some((vertex) => vertex >= finiteFlags.length);
   if (vertices === 0 && !isIndexBeyond) return { vertices, triangles: 0, totalTriangles };
   const finiteVertex = Math.max(0, finiteFlags.indexOf(1));
-  const position = [positions.getX(finiteVertex), positions.getY(finiteVertex), positions.getZ(finiteVertex)].map((coordinate) => (Number.isFinite(coordinate) ? coordinate : 0)) as [number, number, number];
+  const replaceNonFinite = (coordinate: number): number => (Number.isFinite(coordinate) ? coordinate : 0);
+  const position = [positions.getX(finiteVertex), positions.getY(finiteVertex), positions.getZ(finiteVertex)].map(replaceNonFinite) as [number, number, number];
   let triangles = 0;
   for (let i = 0; i < 3 * totalTriangles; i += 3) {
     const corners = [i, i + 1, i + 2].map((vertex) => index?.getX(vertex) ?? vertex);

@@ -65,7 +65,11 @@ export class CovarianceBatch {
       this.root.makeTranslation(position).premultiply(frame);
       const shape = isInPlane
         ? computeDeviations([covarianceAt(0, 0), covarianceAt(0, 1), 0, covarianceAt(1, 0), covarianceAt(1, 1), 0, 0, 0, 0])
-        : computeDeviations([covarianceAt(0, 0), covarianceAt(0, 1), covarianceAt(0, 2), covarianceAt(1, 0), covarianceAt(1, 1), covarianceAt(1, 2), covarianceAt(2, 0), covarianceAt(2, 1), covarianceAt(2, 2)]);
+        : computeDeviations([
+            covarianceAt(0, 0), covarianceAt(0, 1), covarianceAt(0, 2),
+            covarianceAt(1, 0), covarianceAt(1, 1), covarianceAt(1, 2),
+            covarianceAt(2, 0), covarianceAt(2, 1), covarianceAt(2, 2),
+          ]);
       if (shape) {
         const [x, y, z] = shape.deviations.map((deviation) => 2 * deviation * scale) as [number, number, number];
         const size = this.scale.makeScale(clampToFlat(x), clampToFlat(y), clampToFlat(z));

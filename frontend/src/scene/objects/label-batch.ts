@@ -18,9 +18,9 @@ const VERTEX_SHADER = /* glsl */ `
   void main() {
     vUv = uv;
     vFade = fade;
-    vec4 at = modelViewMatrix * vec4(position, 1.0);
-    at.xy += corner;
-    gl_Position = projectionMatrix * at;
+    vec4 viewPosition = modelViewMatrix * vec4(position, 1.0);
+    viewPosition.xy += corner;
+    gl_Position = projectionMatrix * viewPosition;
   }
 `;
 const FRAGMENT_SHADER = /* glsl */ `
@@ -28,8 +28,8 @@ const FRAGMENT_SHADER = /* glsl */ `
   varying vec2 vUv;
   varying vec2 vFade;
   void main() {
-    vec4 ink = texture2D(map, vUv);
-    gl_FragColor = vec4(ink.rgb * mix(1.0, 0.7, vFade.x), ink.a) * vFade.y;
+    vec4 glyphColor = texture2D(map, vUv);
+    gl_FragColor = vec4(glyphColor.rgb * mix(1.0, 0.7, vFade.x), glyphColor.a) * vFade.y;
   }
 `;
 /** Floats per vertex: anchor 3, corner 2, uv 2, fade 2. */

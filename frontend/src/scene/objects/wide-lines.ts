@@ -25,11 +25,11 @@ const VERTEX_SHADER = /* glsl */ `
     #else
       vColor = vec4(1.0);
     #endif
-    vec4 at = modelViewMatrix * vec4(position, 1.0);
-    vec3 sight = isOrthographic ? vec3(0.0, 0.0, -1.0) : at.xyz;
-    vec3 across = cross(mat3(modelViewMatrix) * direction, sight);
-    at.xyz += normalize(across) * side * width;
-    gl_Position = projectionMatrix * at;
+    vec4 viewPosition = modelViewMatrix * vec4(position, 1.0);
+    vec3 lineOfSight = isOrthographic ? vec3(0.0, 0.0, -1.0) : viewPosition.xyz;
+    vec3 sideDirection = cross(mat3(modelViewMatrix) * direction, lineOfSight);
+    viewPosition.xyz += normalize(sideDirection) * side * width;
+    gl_Position = projectionMatrix * viewPosition;
   }
 `;
 const FRAGMENT_SHADER = /* glsl */ `

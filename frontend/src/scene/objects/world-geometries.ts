@@ -73,7 +73,9 @@ function containsPoint(polygon: readonly Vector2[], point: Vector2 | undefined):
   let isInside = false;
   polygon.forEach((edgeStart, i) => {
     const edgeEnd = polygon[(i + 1) % polygon.length] ?? edgeStart;
-    if (edgeStart.y > point.y !== edgeEnd.y > point.y && point.x < ((edgeEnd.x - edgeStart.x) * (point.y - edgeStart.y)) / (edgeEnd.y - edgeStart.y) + edgeStart.x) isInside = !isInside;
+    if (edgeStart.y > point.y === edgeEnd.y > point.y) return;
+    const crossingX = ((edgeEnd.x - edgeStart.x) * (point.y - edgeStart.y)) / (edgeEnd.y - edgeStart.y) + edgeStart.x;
+    if (point.x < crossingX) isInside = !isInside;
   });
   return isInside;
 }

@@ -278,7 +278,12 @@ export class EditingState {
     this.editableParts = message;
     const previousPart = this.part;
     this.part = message.parts.find((part) => isSamePart(part, previousPart)) ?? message.parts[0] ?? null;
-    const keepsDraft = previousPart && this.part && isSamePart(previousPart, this.part) && areNearlyEqual(previousPart.xyz, this.part.xyz) && areNearlyEqual(previousPart.rpy, this.part.rpy);
+    const keepsDraft =
+      previousPart &&
+      this.part &&
+      isSamePart(previousPart, this.part) &&
+      areNearlyEqual(previousPart.xyz, this.part.xyz) &&
+      areNearlyEqual(previousPart.rpy, this.part.rpy);
     if (!keepsDraft) this.discardDraft();
     else if (this.isDraftOpen) this.requestPreview();
     this.changed.emit();

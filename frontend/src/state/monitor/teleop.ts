@@ -89,7 +89,8 @@ export class TeleopState {
     if (isStill(motion)) this.motions.delete(source);
     else this.motions.set(source, motion);
     const currentMotion = this.motion;
-    if (currentMotion.x === previousMotion.x && currentMotion.y === previousMotion.y && currentMotion.z === previousMotion.z && currentMotion.turn === previousMotion.turn) return;
+    const isUnchanged = (["x", "y", "z", "turn"] as const).every((component) => currentMotion[component] === previousMotion[component]);
+    if (isUnchanged) return;
     if (isStill(currentMotion)) this.stop();
     else if (this.timer === 0) this.drive();
     this.changed.emit();

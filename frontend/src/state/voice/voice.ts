@@ -182,7 +182,7 @@ export class VoiceState {
   }
 
   /**
-   * Opens the microphone for a recording; `hasBegun` is called before the first sound is sent, and cancels the
+   * Opens the microphone for a recording; `onBegin` is called before the first sound is sent, and cancels the
    * recording by returning false.
    */
   async startRecording(onBegin: () => boolean): Promise<boolean> {

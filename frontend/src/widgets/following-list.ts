@@ -3,8 +3,11 @@ import { coalesce, h } from "../dom";
 /** The number of rows kept ready beyond the visible ones. */
 const OVERSCAN_ROWS = 8;
 
-/** A list of any length in which only the visible rows are elements; all rows have the same height. */
-export class VirtualList<T> {
+/**
+ * A list that scrolls to its end as items are added, until the user scrolls up. Only the visible rows, which have the
+ * same height, are elements.
+ */
+export class FollowingList<T> {
   readonly element = h("div", { class: "virtual-list", tabIndex: 0 });
   /** Whether the list scrolls to the end when rows are added. */
   isFollowing = true;
