@@ -29,7 +29,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
 }
 
 /** Creates a push button; `label` is its tooltip, and its accessible name if it has no text. */
-export function button(label: string, onClick: () => void, className: string, ...children: readonly Child[]): HTMLButtonElement {
+export function createButton(label: string, onClick: () => void, className: string, ...children: readonly Child[]): HTMLButtonElement {
   const hasText = children.some((child) => typeof child === "string");
   const aria = hasText ? {} : { label };
   const element = h("button", { class: className, title: label, aria, onClick }, ...children);

@@ -18,7 +18,7 @@ interface Inspection {
   readonly settled: boolean;
   /** The number of the server's messages processed since the connection was opened. */
   readonly received: number;
-  /** Pose of every frame in the fixed frame, m and xyzw. */
+  /** The pose of every frame in the fixed frame, m and xyzw. */
   readonly frames: Record<string, FramePose>;
   /** The first robot shown; `visuals` is the number of its visuals that are drawn now. */
   readonly robot: { name: string; links: number; visuals: number } | null;
@@ -53,7 +53,7 @@ interface Inspection {
   /** The recording in progress, the marked part of the history (s since its start), and why recording failed. */
   readonly recording: { path: string; length: number; saved: number | null; problem: string; files: string[]; mark: number[] | null };
   readonly time: { paused: boolean; mode: string; source: string; sources: string[] };
-  /** Joint positions of the Joints panel, rad or m. */
+  /** The joint positions of the Joints panel, rad or m. */
   readonly joints: Record<string, number>;
   /** The description of the first robot, and the link or joint that the panels show. */
   readonly description: {
@@ -73,7 +73,7 @@ interface Inspection {
   readonly framesDrawn: number;
   /** The rightmost pixel column that robots cover, from the left edge of the canvas. */
   readonly robotsRightEdge: number;
-  /** Time of the newest transforms, s. */
+  /** The time of the newest transforms, s. */
   readonly stamp: number;
 }
 

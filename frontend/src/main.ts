@@ -18,7 +18,7 @@ import "./styles/editing.css";
 import "./styles/learning.css";
 import { Connection, createSocketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
-import { button, coalesce, h, isFramed } from "./dom";
+import { createButton, coalesce, h, isFramed } from "./dom";
 import { publishInspection } from "./inspection";
 import { ComparisonPanel } from "./panels/description/comparison-panel";
 import { DiagnosticsPanel } from "./panels/description/diagnostics-panel";
@@ -57,9 +57,9 @@ import { Controls } from "./scene/controls";
 import type { PanelHost } from "./scene/displays/display-panel";
 import type { PartHandles } from "./scene/editing/part-handles";
 import { JointDrag } from "./scene/joint-drag";
-import { Keyboard, TAKES_LETTERS } from "./scene/keyboard";
-import { SERVED } from "./scene/meshes/mesh-files";
-import { StandIns } from "./scene/meshes/stand-ins";
+import { Keyboard, LETTER_INPUT_SELECTOR } from "./scene/keyboard";
+import { SERVER_FILES } from "./scene/meshes/mesh-files";
+import { LodMeshes } from "./scene/meshes/lod-meshes";
 import type { Modeler } from "./scene/modeling/modeler";
 import { Stage } from "./scene/stage";
 import type { ToolEvent } from "./scene/tools/tool";
@@ -83,9 +83,9 @@ import { THEME_CHOICES, ThemeState } from "./state/theme";
 import { takeRequested } from "./requested-settings";
 import { openBrowserStorage } from "./storage";
 import { language, languageChosen, languageTag, strings } from "./strings";
-import { matches, SHORTCUTS } from "./widgets/shortcuts";
+import { matchesShortcut, SHORTCUTS } from "./widgets/shortcuts";
 
-const CLOSING_MS = 2000;
+const CLOSE_DELAY_MS = 2000;
 /** The panels that show what the configuration file contains. */
 const CONFIGURATION_PANELS: readonly PanelId[] = ["displays", "views", "tool-properties"];
 
@@ -98,8 +98,8 @@ function start(app: HTMLElement): void {
   const ownKey = hasOwnDisplays(location.href) ? ensureOwnKey(openBrowserStorage("sessionStorage")) : null;
   const tokens = new Tokens(createAddressBar(), openBrowserStorage());
   const connection = new Connection(createSocketUrl(location.href, ownKey, language), tokens);
-  const door = new TokenScreen(connection, tokens, app);
-  // Connect before drawing anything: the answer takes a moment.
+  const tokenScreen = new TokenScreen(connection, tokens, app);
+  // Connect before drawing anything, because the answer takes some time.
   connection.open();
   // Browsers slow down the timers of hidden pages, the retry timer among them.
   document.addEventListener("visibilitychange", () => {
@@ -108,25 +108,25 @@ function start(app: HTMLElement): void {
   const session = new Session(connection);
   languageChosen.on(() => session.pageMemory.store());
 
-  const sheet = new KeySheet(session.tools);
+  const keySheet = new KeySheet(session.tools);
   let modeler: Modeler | null = null;
   let handles: PartHandles | null = null;
-  const commands = new WorldCommands(session.modeling, () => modeler?.escape());
-  const scene = new ScenePanel(
+  const worldCommands = new WorldCommands(session.modeling, () => modeler?.escape());
+  const scenePanel = new ScenePanel(
     session,
-    commands,
+    worldCommands,
     () => stage?.fit(),
     () => dock.open("diagnostics"),
-    () => sheet.toggle(),
+    () => keySheet.toggle(),
   );
   const dockBox = h("main", { class: "dock" });
   app.append(dockBox);
-  const [source, diagram] = [new SourcePanel(session), new DiagramPanel(session)];
-  const voice = new VoicePanel(session.voice, session.enrolledWords);
-  const lesson = new LessonPanel(session.course);
-  const terminal = new TerminalPanel(session.terminals, theme);
+  const [sourcePanel, diagramPanel] = [new SourcePanel(session), new DiagramPanel(session)];
+  const voicePanel = new VoicePanel(session.voice, session.enrolledWords);
+  const lessonPanel = new LessonPanel(session.course);
+  const terminalPanel = new TerminalPanel(session.terminals, theme);
   const panels = [
-    scene,
+    scenePanel,
     new DisplaysPanel(session),
     new ViewsPanel(session),
     new ToolPropertiesPanel(session),
@@ -135,17 +135,17 @@ function start(app: HTMLElement): void {
     new TransformationPanel(),
     new JointsPanel(session),
     new LinksPanel(session),
-    diagram,
-    source,
+    diagramPanel,
+    sourcePanel,
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
-    new WorldPanel(session.modeling, session.angleUnits, commands),
+    new WorldPanel(session.modeling, session.angleUnits, worldCommands),
     new ComparisonPanel(session, () => stage?.fit()),
     new EditingPanel(session),
-    voice,
-    terminal,
+    voicePanel,
+    terminalPanel,
     new ProgramPanel(session.terminals, theme),
-    lesson,
+    lessonPanel,
     new ChecksPanel(session.course),
     ...createLivePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
@@ -164,30 +164,30 @@ function start(app: HTMLElement): void {
 
   session.description.placeRequested.on(({ file, line, display, name }) => {
     dock.open("source");
-    source.reveal(file, line, { display, name });
+    sourcePanel.reveal(file, line, { display, name });
   });
 
   session.course.availabilityChanged.on(() => {
     if (!session.course.course) return;
     const { folder, file } = session.course.course;
-    source.openWorkspace(folder);
-    if (file !== "") void source.edit(file);
+    sourcePanel.openWorkspace(folder);
+    if (file !== "") void sourcePanel.edit(file);
   });
   session.course.fileRequested.on((path) => {
     dock.open("source");
-    void source.edit(path);
+    void sourcePanel.edit(path);
   });
 
   session.enrolledWords.enrollRequested.on(() => {
     dock.open("voice");
-    voice.enrollHere();
+    voicePanel.enrollHere();
   });
 
   session.editing.editRequested.on(() => dock.open("editing"));
 
-  const stage = createStage(scene.container, session, dock.displayPanels, theme);
-  if (stage) scene.connectScene(stage.uncoveredArea);
-  commands.bindKeys();
+  const stage = createStage(scenePanel.container, session, dock.displayPanels, theme);
+  if (stage) scenePanel.connectScene(stage.uncoveredArea);
+  worldCommands.bindKeys();
   const toolbox = stage && connectTools(stage, session, (event) => {
     if (handles?.onPointer(event)) return null;
     return modeler ? modeler.onPointer(event) : event;
@@ -196,33 +196,33 @@ function start(app: HTMLElement): void {
     loadModeler(stage, session, (newModeler) => (modeler = newModeler));
     loadPartHandles(stage, session, (newHandles) => (handles = newHandles));
   }
-  const files = new FileCommands(session.configuration);
-  const titleBar = new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens));
+  const fileCommands = new FileCommands(session.configuration);
+  const titleBar = new TitleBar(session, dock, fileCommands, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens));
   app.prepend(titleBar.element);
   if (isFramed()) {
     document.documentElement.classList.add("framed");
     const openTab = (): unknown => window.open(tokens.link, "_blank", "noopener");
-    titleBar.element.append(button(strings.shell.openTabHint, openTab, "tool", strings.shell.openTab));
+    titleBar.element.append(createButton(strings.shell.openTabHint, openTab, "tool", strings.shell.openTab));
   }
-  bindFileKeys(session.configuration, files, source, panels.filter(({ id }) => CONFIGURATION_PANELS.includes(id)).map(({ element }) => element));
+  bindFileKeys(session.configuration, fileCommands, sourcePanel, panels.filter(({ id }) => CONFIGURATION_PANELS.includes(id)).map(({ element }) => element));
   bindCourseKeys(session.course);
-  const fold = new TimeFold(session.time, dock.strip);
-  app.append(h("div", { class: "foot" }, new TimelineBar(session).element, fold.element, new StatusBar(session, stage).element));
-  document.body.append(door.element);
-  bindFullScreenKey(scene.box);
+  const timeFold = new TimeFold(session.time, dock.strip);
+  app.append(h("div", { class: "foot" }, new TimelineBar(session).element, timeFold.element, new StatusBar(session, stage).element));
+  document.body.append(tokenScreen.element);
+  bindFullScreenKey(scenePanel.box);
   document.addEventListener("keydown", (event) => {
     const isTyping = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
-    if (event.key === "?" && !isTyping) sheet.toggle();
+    if (event.key === "?" && !isTyping) keySheet.toggle();
   });
-  bindTalkKey(session.voice, TAKES_LETTERS);
+  bindTalkKey(session.voice, LETTER_INPUT_SELECTOR);
   publishInspection(session, stage, toolbox, {
-    source: () => source.inspect(),
-    diagram: () => diagram.inspect(),
+    source: () => sourcePanel.inspect(),
+    diagram: () => diagramPanel.inspect(),
     monitor: () => session.monitor.inspect(),
     voice: () => session.voice.inspect(),
     editing: () => handles?.inspect() ?? {},
-    terminal: () => terminal.inspect(),
-    lesson: () => lesson.inspect(),
+    terminal: () => terminalPanel.inspect(),
+    lesson: () => lessonPanel.inspect(),
   });
 }
 
@@ -275,14 +275,14 @@ function followAvailability(dock: Dock, session: Session): void {
 
 /**
  * Returns a function that opens a panel when it has content, and closes it when it no longer has any. It closes the
- * panel after a moment: a program that is restarted soon has content again, and the panel then stays where the user
+ * panel after a delay: a program that is restarted soon has content again, and the panel then stays where the user
  * put it.
  */
 function openWhile(dock: Dock, id: PanelId, hasContent: () => boolean): () => void {
   let closeTimer: ReturnType<typeof setTimeout> | undefined;
   return () => {
     clearTimeout(closeTimer);
-    if (!hasContent()) closeTimer = setTimeout(() => dock.close(id), CLOSING_MS);
+    if (!hasContent()) closeTimer = setTimeout(() => dock.close(id), CLOSE_DELAY_MS);
     else if (!dock.isOpen(id)) dock.open(id);
   };
 }
@@ -322,12 +322,12 @@ function loadPartHandles(stage: Stage, session: Session, onLoaded: (handles: Par
 /** Binds the keys of the course, which work everywhere except in dialogs. */
 function bindCourseKeys(course: CourseState): void {
   const bindings = [
-    { shortcut: SHORTCUTS.previousStep, run: () => course.move(-1) },
-    { shortcut: SHORTCUTS.nextStep, run: () => course.move(1) },
+    { shortcut: SHORTCUTS.previousStep, run: () => course.moveBy(-1) },
+    { shortcut: SHORTCUTS.nextStep, run: () => course.moveBy(1) },
     { shortcut: SHORTCUTS.checkStep, run: () => course.check() },
   ];
   const onKeyDown = (event: KeyboardEvent): void => {
-    const binding = bindings.find(({ shortcut }) => matches(event, shortcut));
+    const binding = bindings.find(({ shortcut }) => matchesShortcut(event, shortcut));
     if (!binding || !course.isAvailable || (event.target instanceof Element && event.target.closest("dialog"))) return;
     event.preventDefault();
     event.stopPropagation();
@@ -339,7 +339,7 @@ function bindCourseKeys(course: CourseState): void {
 /** Creates the scene; returns null without WebGL, where everything else still works. */
 function createStage(container: HTMLElement, session: Session, panels: PanelHost, theme: ThemeState): Stage | null {
   try {
-    return new Stage(container, session, panels, theme, SERVED, new StandIns(createStandInWorker));
+    return new Stage(container, session, panels, theme, SERVER_FILES, new LodMeshes(createLodMeshWorker));
   } catch (error) {
     console.warn(error);
     container.append(createNoWebglNotice());
@@ -348,8 +348,8 @@ function createStage(container: HTMLElement, session: Session, panels: PanelHost
 }
 
 /** Starts the worker. The expression must have this form for Vite to bundle the worker as a separate file. */
-function createStandInWorker(): Worker {
-  return new Worker(new URL("./scene/meshes/stand-in-worker.ts", import.meta.url), { type: "module" });
+function createLodMeshWorker(): Worker {
+  return new Worker(new URL("./scene/meshes/lod-mesh-worker.ts", import.meta.url), { type: "module" });
 }
 
 const app = document.getElementById("app");

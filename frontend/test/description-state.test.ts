@@ -2,10 +2,10 @@ import { Ray, Vector3 } from "three";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { Description, JointDetails, LinkDetails, PageMessage, ServerMessage } from "../src/protocol";
-import { slideDistance, turnAngle } from "../src/scene/joint-drag";
+import { computeSlideDistance, computeTurnAngle } from "../src/scene/joint-drag";
 import { AngleUnits } from "../src/state/angle-unit";
 import { DescriptionModel } from "../src/state/description-model";
-import { layOut } from "../src/state/diagram-layout";
+import { layOutDiagram } from "../src/state/diagram-layout";
 import { InspectState } from "../src/state/inspect";
 import { formatJointCells, sortJoints } from "../src/state/joint-table";
 import { listVisibleRows, LinkTreeState } from "../src/state/link-tree";
@@ -149,7 +149,7 @@ describe("the model", () => {
   const model = new DescriptionModel(createDescription());
 
   it("is a tree with depths and positions in the source", () => {
-    expect(model.jointsBelow("base").map((joint) => joint.name)).toEqual(["lift", "turn"]);
+    expect(model.childJointsOf("base").map((joint) => joint.name)).toEqual(["lift", "turn"]);
     expect([model.depthOf("base"), model.depthOf("tip"), model.maxDepth]).toEqual([0, 2, 2]);
     expect(model.elementsAt("m.xacro", 4).map((element) => element.name)).toEqual(["left", "right"]);
     expect(model.elementsAt("m.xacro", 7)).toEqual([]);
@@ -169,7 +169,7 @@ describe("the model", () => {
   });
 
   it("is drawn as urdf_to_graphviz draws it", () => {
-    const { nodes } = layOut(model, true, (text) => text.length * 7);
+    const { nodes } = layOutDiagram(model, true, (text) => text.length * 7);
     const findNode = (name: string): (typeof nodes)[number] => nodes.find((node) => node.element.name === name)!;
     expect(nodes).toHaveLength(7);
     expect(findNode("turn").origin).toEqual(["xyz: 0 0 0.5", "rpy: 0 -0 1.5708"]);
@@ -182,7 +182,7 @@ describe("the model", () => {
 
   it("ignores a second joint that moves the same link, as urdfdom does", () => {
     const descriptionWithBoth = createDescription({ joints: [createJoint("a", "base", "left"), createJoint("turn", "base", "left")] });
-    expect(new DescriptionModel(descriptionWithBoth).jointsBelow("base").map((joint) => joint.name)).toEqual(["turn"]);
+    expect(new DescriptionModel(descriptionWithBoth).childJointsOf("base").map((joint) => joint.name)).toEqual(["turn"]);
   });
 });
 
@@ -247,7 +247,7 @@ describe("dragging a link", () => {
     const grabbedPoint = new Vector3(1, 0, 0);
     for (const angle of [0.3, -0.7, 1.2]) {
       const ray = rayBetween(eye, new Vector3(Math.cos(angle), Math.sin(angle), 0));
-      expect(turnAngle(ray, z, new Vector3(), grabbedPoint, 0)).toBeCloseTo(angle, 4);
+      expect(computeTurnAngle(ray, z, new Vector3(), grabbedPoint, 0)).toBeCloseTo(angle, 4);
     }
   });
 
@@ -257,11 +257,11 @@ describe("dragging a link", () => {
     for (let i = 1; i <= 60; i++) {
       const pointerAngle = i * 0.2;
       const ray = rayBetween(eye, new Vector3(Math.cos(pointerAngle), Math.sin(pointerAngle), 0));
-      angle = turnAngle(ray, z, new Vector3(), new Vector3(1, 0, 0), angle);
+      angle = computeTurnAngle(ray, z, new Vector3(), new Vector3(1, 0, 0), angle);
     }
     expect(angle).toBeCloseTo(12, 3);
     const side = new Vector3(0, -5, 0);
-    const edgeOnAngle = turnAngle(rayBetween(side, new Vector3(0.5, 0, 0)), z, new Vector3(), new Vector3(0, -1, 0), 0);
+    const edgeOnAngle = computeTurnAngle(rayBetween(side, new Vector3(0.5, 0, 0)), z, new Vector3(), new Vector3(0, -1, 0), 0);
     expect(edgeOnAngle).toBeGreaterThan(0.3);
     expect(edgeOnAngle).toBeLessThan(0.7);
   });
@@ -269,7 +269,7 @@ describe("dragging a link", () => {
   it("moves it along its axis, and not at all where the pointer does not determine a position", () => {
     const x = new Vector3(1, 0, 0);
     const ray = rayBetween(new Vector3(0.4, -3, 2), new Vector3(0.4, 0, 0));
-    expect(slideDistance(ray, x, new Vector3(0.1, 0, 0))).toBeCloseTo(0.3, 6);
-    expect(slideDistance(new Ray(new Vector3(-5, 0, 0.1), x), x, new Vector3())).toBe(0);
+    expect(computeSlideDistance(ray, x, new Vector3(0.1, 0, 0))).toBeCloseTo(0.3, 6);
+    expect(computeSlideDistance(new Ray(new Vector3(-5, 0, 0.1), x), x, new Vector3())).toBe(0);
   });
 });

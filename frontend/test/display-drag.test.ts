@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { dropPart, dropPlace, type DropPart } from "../src/panels/displays/display-drag";
+import { computeDropPart, computeDropPlace, type DropPart } from "../src/panels/displays/display-drag";
 import { DisplaysState } from "../src/state/displays";
 import { createDisplay, createTree } from "./messages";
 
@@ -25,7 +25,7 @@ function drop(draggedId: string, targetId: string, part: DropPart): unknown {
   const state = createDisplays();
   const [dragged, target] = [state.find(draggedId), state.find(targetId)];
   if (!dragged || !target) throw new Error("no such display");
-  return dropPlace(state.displays, dragged, target, part);
+  return computeDropPlace(state.displays, dragged, target, part);
 }
 
 describe("a dropped display", () => {
@@ -56,11 +56,11 @@ describe("a dropped display", () => {
   });
 
   it("is inserted according to the pointer's position on the row", () => {
-    expect(dropPart(2, 20, false)).toBe("before");
-    expect(dropPart(12, 20, false)).toBe("after");
-    expect(dropPart(10, 20, true)).toBe("inside");
-    expect(dropPart(2, 20, true)).toBe("before");
-    expect(dropPart(19, 20, true)).toBe("after");
+    expect(computeDropPart(2, 20, false)).toBe("before");
+    expect(computeDropPart(12, 20, false)).toBe("after");
+    expect(computeDropPart(10, 20, true)).toBe("inside");
+    expect(computeDropPart(2, 20, true)).toBe("before");
+    expect(computeDropPart(19, 20, true)).toBe("after");
   });
 });
 

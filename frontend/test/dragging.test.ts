@@ -13,8 +13,8 @@ function createEvent(x: number, y: number, part: Partial<DragEvent> = {}): DragE
     ray: new Ray(new Vector3(x, y, 10), new Vector3(0, 0, -1)),
     dx: 0,
     dy: 0,
-    shift: false,
-    ctrl: false,
+    isShiftDown: false,
+    isCtrlDown: false,
     right: new Vector3(1, 0, 0),
     up: new Vector3(0, 1, 0),
     forward: new Vector3(0, 0, -1),
@@ -50,7 +50,7 @@ describe("moving", () => {
   test("without constraint moves in the plane that faces the viewer, or with Shift along the line of sight", () => {
     const drag = new Drag("move_3d", START, START.position, NO_ROTATION);
     expectPosition(drag, createEvent(3, 3), 3, 3, 3);
-    const pose = drag.followPointer(createEvent(3, 3, { shift: true, dy: 10 }));
+    const pose = drag.followPointer(createEvent(3, 3, { isShiftDown: true, dy: 10 }));
     expect(pose?.position.x).toBeCloseTo(3);
     expect(pose?.position.z).toBeGreaterThan(3);
   });

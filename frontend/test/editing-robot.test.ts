@@ -57,31 +57,31 @@ describe("rotations", () => {
 
 describe("editing", () => {
   it("requests the parts of a link only while an editor is open", () => {
-    editing.follow(LINK);
+    editing.setLink(LINK);
     expect(sentMessages).toEqual([]);
-    const release = editing.hold();
+    const release = editing.activate();
     expect(sentMessages).toEqual([{ type: "request_editable_parts", ...LINK }]);
     release();
-    editing.follow({ ...LINK, link: "hand" });
+    editing.setLink({ ...LINK, link: "hand" });
     expect(sentMessages).toHaveLength(1);
   });
 
   it("requests a preview when dragging pauses, and only for changed values", () => {
-    editing.follow(LINK);
-    editing.hold();
+    editing.setLink(LINK);
+    editing.activate();
     receiveParts(createPart());
-    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
-    editing.move({ xyz: [0, 0, 1.2], rpy: [0, 0, 0] });
+    editing.setDraft({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    editing.setDraft({ xyz: [0, 0, 1.2], rpy: [0, 0, 0] });
     expect(listSentTypes()).toEqual(["request_editable_parts"]);
     vi.runAllTimers();
     expect(sentMessages.at(-1)).toMatchObject({ type: "preview_edit", part: "joint", name: "shoulder", xyz: [0, 0, 1.2], rpy: null, together: false });
   });
 
   it("ignores the preview of an older request, and writes the one that is shown", () => {
-    editing.follow(LINK);
-    editing.hold();
+    editing.setLink(LINK);
+    editing.activate();
     receiveParts(createPart());
-    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    editing.setDraft({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     vi.runAllTimers();
     const { number } = sentMessages.at(-1) as { number: number };
     const files = [{ file: "/r.urdf", diff: ["+x"] }];
@@ -95,23 +95,23 @@ describe("editing", () => {
   });
 
   it("shows the requested robot until the new one arrives", () => {
-    editing.follow(LINK);
-    editing.hold();
+    editing.setLink(LINK);
+    editing.activate();
     receiveParts(createPart());
-    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    editing.setDraft({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     connection.message.emit({ type: "edit_written", files: ["/r.urdf"], refusal: null, is_saved: true });
     expect(editing.draft).not.toBeNull();
-    expect(editing.isOpen).toBe(false);
+    expect(editing.isDraftOpen).toBe(false);
     connection.message.emit({ type: "robot_scene", display: "d", revision: 2, name: "r", links: [], joints: [] });
     expect(editing.draft).toBeNull();
     expect(editing.writtenFiles).toEqual(["/r.urdf"]);
   });
 
   it("keeps a draft when other parts of the robot change, and drops it when its own values do", () => {
-    editing.follow(LINK);
-    editing.hold();
+    editing.setLink(LINK);
+    editing.activate();
     receiveParts(createPart());
-    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    editing.setDraft({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     receiveParts(createPart({ line: 4 }));
     expect(editing.draft?.xyz).toEqual([0, 0, 1.1]);
     receiveParts(createPart({ xyz: [0, 0, 2] }));
@@ -119,21 +119,21 @@ describe("editing", () => {
   });
 
   it("keeps a draft whose writing failed", () => {
-    editing.follow(LINK);
-    editing.hold();
+    editing.setLink(LINK);
+    editing.activate();
     receiveParts(createPart());
-    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    editing.setDraft({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     const refusal = { code: "EDIT107", severity: "error" as const, message: "changed", file: null, line: null, column: null, end_line: null, end_column: null, excerpt: "", notes: [], hints: [] };
     connection.message.emit({ type: "edit_written", files: [], refusal, is_saved: false });
-    expect(editing.isOpen).toBe(true);
+    expect(editing.isDraftOpen).toBe(true);
     expect(editing.refusal).toBe(refusal);
   });
 
   it("moves nothing if writing is not allowed", () => {
-    editing.follow(LINK);
-    editing.hold();
+    editing.setLink(LINK);
+    editing.activate();
     connection.message.emit({ type: "editable_parts", ...LINK, refusal_reason: "elsewhere", parts: [createPart()] });
-    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    editing.setDraft({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
     expect(editing.draft).toBeNull();
   });
 });

@@ -3,7 +3,7 @@ import type { Display, FrameTable, JointControl, JointScene, LinkScene, Property
 import { computeJointPose, MovingRobot } from "../src/export/moving-robot";
 import { RecordedConnection } from "../src/export/recorded-connection";
 import { RecordedFiles } from "../src/export/recorded-files";
-import { formatTime } from "../src/scene/video";
+import { formatDuration } from "../src/scene/video";
 
 const HALF = Math.SQRT1_2;
 
@@ -146,5 +146,5 @@ describe("grid and axes of an exported page", () => {
 });
 
 it("shows the time of a recording", () => {
-  expect([0, 9, 60, 3725].map(formatTime)).toEqual(["0:00", "0:09", "1:00", "62:05"]);
+  expect([0, 9, 60, 3725].map(formatDuration)).toEqual(["0:00", "0:09", "1:00", "62:05"]);
 });

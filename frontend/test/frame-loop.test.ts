@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { FINEST, FrameLoop } from "../src/scene/frame-loop";
+import { FINEST_DETAIL, FrameLoop } from "../src/scene/frame-loop";
 
 let now = 0;
 let scheduledCallbacks: (() => void)[] = [];
@@ -40,21 +40,21 @@ describe("the frame loop", () => {
     const drawnCount = loop.framesDrawn;
     runScreen(5000);
     expect(loop.framesDrawn).toBe(drawnCount);
-    expect(loop.framesPerSecond(now)).toBeNull();
+    expect(loop.computeFrameRate(now)).toBeNull();
   });
 
   it("draws nothing while suspended, and the pending frame afterwards", () => {
     const draw = vi.fn();
     const loop = new FrameLoop(draw, true);
     loop.invalidate();
-    loop.redraw(FINEST);
+    loop.redraw(FINEST_DETAIL);
     runScreen(1000);
     expect(draw).not.toHaveBeenCalled();
     expect(loop.isSettled).toBe(false);
     loop.release();
     runScreen(100);
     expect(draw).toHaveBeenCalledTimes(1);
-    loop.redraw(FINEST);
+    loop.redraw(FINEST_DETAIL);
     expect(draw).toHaveBeenCalledTimes(2);
   });
 
@@ -68,7 +68,7 @@ describe("the frame loop", () => {
 
   it("does not draw the first frames more coarsely because of the time that shaders take to compile", () => {
     const details: number[] = [];
-    const loop = new FrameLoop(({ share }) => {
+    const loop = new FrameLoop(({ resolutionShare: share }) => {
       details.push(share);
       if (details.length <= 6) now += 300;
     });
@@ -100,7 +100,7 @@ describe("the frame loop", () => {
 
   it("draws the first frame coarsely, for speed, and a fine one soon afterwards", () => {
     const smoothFrames: boolean[] = [];
-    const loop = new FrameLoop(({ smooth }) => smoothFrames.push(smooth));
+    const loop = new FrameLoop(({ isAntialiased: smooth }) => smoothFrames.push(smooth));
     loop.invalidate();
     runScreen(100);
     expect(loop.isSettled).toBe(false);
@@ -113,7 +113,7 @@ describe("the frame loop", () => {
 
   it("draws coarsely during motion on a slow machine, and finely at rest", () => {
     const smoothFrames: boolean[] = [];
-    const loop = new FrameLoop(({ smooth }) => smoothFrames.push(smooth));
+    const loop = new FrameLoop(({ isAntialiased: smooth }) => smoothFrames.push(smooth));
     runScreen(3000, () => loop.invalidate(), 100);
     expect(smoothFrames.at(-1)).toBe(false);
     runScreen(1000);
@@ -122,7 +122,7 @@ describe("the frame loop", () => {
 
   it("draws motion coarsely from the start on a machine known to be slow", () => {
     const movingFrames: boolean[] = [];
-    const loop = new FrameLoop((detail) => movingFrames.push(detail.moving));
+    const loop = new FrameLoop((detail) => movingFrames.push(detail.isMoving));
     loop.expectSlow();
     runScreen(1000, () => loop.invalidate());
     expect(movingFrames).not.toContain(false);
@@ -134,7 +134,7 @@ describe("the frame loop", () => {
 
   it("lowers the resolution during motion, and restores it once the machine has kept up for a while", () => {
     const shares: number[] = [];
-    const loop = new FrameLoop(({ share }) => shares.push(share));
+    const loop = new FrameLoop(({ resolutionShare: share }) => shares.push(share));
     runScreen(5000, () => loop.invalidate(), 30);
     expect(shares.at(-1)).toBe(0.5);
     runScreen(15_000, () => loop.invalidate());

@@ -35,8 +35,8 @@ describe("the frame store", () => {
     store.setTable({ type: "frame_table", revision: 1, names: ["base", "lost"], parents: [-1, 0] });
     store.setTransforms(createTransforms(1, [HERE, NOWHERE]));
     expect(store.snapshot()).toEqual({ base: { position: [1, 2, 3], orientation: [0, 0, 0, 1] } });
-    expect(store.has(store.rowOf("lost"))).toBe(false);
-    expect(store.has(store.rowOf("unknown"))).toBe(false);
+    expect(store.hasPose(store.rowOf("lost"))).toBe(false);
+    expect(store.hasPose(store.rowOf("unknown"))).toBe(false);
   });
 
   it("emits changes only if a pose has changed", () => {
@@ -56,9 +56,9 @@ describe("the frame store", () => {
     const store = new FrameStore();
     store.setTransforms(createTransforms(2, [HERE]));
     store.setTable({ type: "frame_table", revision: 2, names: ["base"], parents: [-1] });
-    expect(store.has(0)).toBe(true);
+    expect(store.hasPose(0)).toBe(true);
     store.setTransforms(createTransforms(1, [NOWHERE]));
-    expect(store.has(0)).toBe(true);
+    expect(store.hasPose(0)).toBe(true);
   });
 
   it("transfers poses to a new table by name", () => {

@@ -18,8 +18,8 @@ let dragCount: number;
 let tool: InteractTool;
 
 function createEvent(part: Partial<ToolEvent> & Pick<ToolEvent, "type">): ToolEvent {
-  const buttons = { left: false, middle: false, right: false, button: null };
-  return { x: 1, y: 2, dx: 1, dy: 0, wheel: 0, shift: false, ctrl: false, alt: false, click: false, ...buttons, ...part };
+  const buttons = { isLeftDown: false, isMiddleDown: false, isRightDown: false, button: null };
+  return { x: 1, y: 2, dx: 1, dy: 0, wheel: 0, isShiftDown: false, isCtrlDown: false, isAltDown: false, isClick: false, ...buttons, ...part };
 }
 
 beforeEach(() => {
@@ -43,7 +43,7 @@ beforeEach(() => {
       interaction = next;
     },
   } as unknown as Stage;
-  const view = { controller: new OrbitController(), drag: () => (dragCount += 1), wheel: () => undefined };
+  const view = { controller: new OrbitController(), drag: () => (dragCount += 1), handleWheel: () => undefined };
   const state = { rows: { bool: () => true } };
   const doNothing = (): void => undefined;
   tool = new InteractTool({ stage, session: { view }, state, setHint: doNothing, setCursor: doNothing, finish: doNothing } as unknown as ToolContext);
@@ -64,10 +64,10 @@ describe("the Interact tool", () => {
 
   it("keeps an object that accepts the press until the button is released, and hides the others", () => {
     hoveredKey = "a";
-    tool.onPointer(createEvent({ type: "down", button: "left", left: true }));
+    tool.onPointer(createEvent({ type: "down", button: "left", isLeftDown: true }));
     expect(interaction).toEqual({ isEnabled: true, hidesOthers: true });
     hoveredKey = null;
-    tool.onPointer(createEvent({ type: "move", left: true }));
+    tool.onPointer(createEvent({ type: "move", isLeftDown: true }));
     tool.onPointer(createEvent({ type: "up", button: "left" }));
     expect(pointerTypes).toEqual(["enter", "down", "move", "up", "leave"]);
     expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
@@ -75,16 +75,16 @@ describe("the Interact tool", () => {
   });
 
   it("moves the camera if the press was not on an object, even while the pointer is over one", () => {
-    tool.onPointer(createEvent({ type: "down", button: "left", left: true }));
+    tool.onPointer(createEvent({ type: "down", button: "left", isLeftDown: true }));
     hoveredKey = "a";
-    tool.onPointer(createEvent({ type: "move", left: true }));
+    tool.onPointer(createEvent({ type: "move", isLeftDown: true }));
     expect([pointerTypes, dragCount]).toEqual([[], 1]);
   });
 
   it("moves the camera if the drawing refuses the press", () => {
     [hoveredKey, acceptsPress] = ["a", false];
-    tool.onPointer(createEvent({ type: "down", button: "left", left: true }));
-    tool.onPointer(createEvent({ type: "move", left: true }));
+    tool.onPointer(createEvent({ type: "down", button: "left", isLeftDown: true }));
+    tool.onPointer(createEvent({ type: "move", isLeftDown: true }));
     expect(dragCount).toBe(1);
     expect(interaction).toEqual({ isEnabled: true, hidesOthers: false });
   });

@@ -3,8 +3,8 @@ import { Connection } from "../src/connection/connection";
 import { splitName } from "../src/panels/joints/joint-row";
 import type { JointControl, PageMessage, ServerMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
-import { PoseStore, readSrdf, toSrdf, matchesPose } from "../src/state/named-poses";
-import { roundTrip, Sweep } from "../src/state/sweep";
+import { PoseStore, parseSrdf, formatSrdf, matchesPose } from "../src/state/named-poses";
+import { roundTripPosition, Sweep } from "../src/state/sweep";
 import { openBrowserStorage } from "../src/storage";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
@@ -77,11 +77,11 @@ describe("moving joints", () => {
   });
 
   it("finds the joint that moves a mimic joint, and its required position", () => {
-    expect(joints.leaderOf("grip", 0.7)?.position).toBe(0.7);
-    const leader = joints.leaderOf("tip", 1.5);
+    expect(joints.findLeader("grip", 0.7)?.position).toBe(0.7);
+    const leader = joints.findLeader("tip", 1.5);
     expect(leader?.control.name).toBe("grip");
     expect(leader?.position).toBe(-0.5);
-    expect(joints.leaderOf("fixed", 0)).toBeNull();
+    expect(joints.findLeader("fixed", 0)).toBeNull();
   });
 });
 
@@ -104,7 +104,7 @@ describe("named poses", () => {
 
   it("survive export to SRDF and import", () => {
     const poses = [home, { name: 'say "hi" & go', positions: { a: 3 } }];
-    expect(readSrdf(toSrdf("r&d", poses))).toEqual(poses);
+    expect(parseSrdf(formatSrdf("r&d", poses))).toEqual(poses);
   });
 
   it("are read from a MoveIt file", () => {
@@ -116,11 +116,11 @@ describe("named poses", () => {
       </group_state>
       <group_state group="hand" name="ready"><joint name="z" value="0"></joint></group_state>
     </robot>`;
-    expect(readSrdf(text)).toEqual([
+    expect(parseSrdf(text)).toEqual([
       { name: "ready", positions: { x: 1.5, y: -2 } },
       { name: "ready (hand)", positions: { z: 0 } },
     ]);
-    expect(readSrdf("no XML at all")).toEqual([]);
+    expect(parseSrdf("no XML at all")).toEqual([]);
   });
 
   it("are marked if the robot is in that pose", () => {
@@ -132,9 +132,9 @@ describe("named poses", () => {
 describe("a sweep", () => {
   it("goes from the joint's position to both limits and back", () => {
     const range = { lower: -1, upper: 2 };
-    expect([0, 1 / 3, 0.5, 5 / 6, 1].map((part) => roundTrip(range, 0, part))).toEqual([0, 2, 1, -1, 0]);
+    expect([0, 1 / 3, 0.5, 5 / 6, 1].map((part) => roundTripPosition(range, 0, part))).toEqual([0, 2, 1, -1, 0]);
     for (let i = 0; i <= 100; i++) {
-      const position = roundTrip(range, 1.5, i / 100);
+      const position = roundTripPosition(range, 1.5, i / 100);
       expect(position).toBeGreaterThanOrEqual(-1);
       expect(position).toBeLessThanOrEqual(2);
     }

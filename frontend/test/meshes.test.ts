@@ -120,7 +120,7 @@ describe("non-finite vertices", () => {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([9, 9, 9, 1, 0, 0, NaN, 1, 0, 0, 0, 1]), 3));
     geometry.setIndex([0, 1, 3, 0, 1, 2]);
-    expect(collapseNonFinite(geometry)).toEqual({ vertices: 1, triangles: 1, ofTriangles: 2 });
+    expect(collapseNonFinite(geometry)).toEqual({ vertices: 1, triangles: 1, totalTriangles: 2 });
     expect([...(geometry.index?.array ?? [])]).toEqual([0, 1, 3, 0, 0, 0]);
     geometry.computeBoundingBox();
     expect(geometry.boundingBox?.max.toArray()).toEqual([9, 9, 9]);
@@ -180,7 +180,7 @@ describe("the progress of meshes", () => {
     vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
     const progress = new MeshProgress();
     const formatLoads = (): string[] => progress.loads.map((load) => `${load.name} ${formatProgress(load)}`);
-    const report = progress.begin("arm.stl");
+    const report = progress.startLoad("arm.stl");
     report.onBytes(20_000, null);
     expect(formatLoads()).toEqual([]);
     await vi.advanceTimersByTimeAsync(500);
@@ -197,11 +197,11 @@ describe("the progress of meshes", () => {
   it("is reported at once for large files that are being read, and never for those that load quickly", async () => {
     vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
     const progress = new MeshProgress();
-    const smallLoad = progress.begin("small.stl");
+    const smallLoad = progress.startLoad("small.stl");
     smallLoad.onBytes(100, 100);
     await smallLoad.startReading();
     smallLoad.end();
-    const largeLoad = progress.begin("large.stl");
+    const largeLoad = progress.startLoad("large.stl");
     largeLoad.onBytes(50_000_000, 50_000_000);
     let isReading = false;
     void largeLoad.startReading().then(() => (isReading = true));

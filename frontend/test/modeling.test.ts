@@ -4,7 +4,7 @@ import { formatHex, createEntityItems } from "../src/panels/modeling/entity-item
 import type { ModelingState, PageMessage, WorldEntity } from "../src/protocol";
 import { AngleUnits } from "../src/state/angle-unit";
 import { Modeling } from "../src/state/modeling/modeling";
-import { placementAt, resizeChange, scaleSize, computeStretchFactors, placeWall } from "../src/state/modeling/shapes";
+import { placementAt, createResizeChange, scaleSize, computeStretchFactors, wallPlacementBetween } from "../src/state/modeling/shapes";
 import { Snapping, snap } from "../src/state/modeling/snapping";
 import { openBrowserStorage } from "../src/storage";
 import type { TreeItem } from "../src/tree/tree-item";
@@ -62,9 +62,9 @@ describe("shapes", () => {
   });
 
   it("include a wall from one point to another", () => {
-    const wall = placeWall([1, 1], [1, 4]);
+    const wall = wallPlacementBetween([1, 1], [1, 4]);
     expect(wall).toEqual({ pose: [1, 2.5, 0.5, 0, 0, Math.PI / 2], size: [3, 0.1, 1] });
-    expect(placeWall([1, 1], [1, 1])).toBeNull();
+    expect(wallPlacementBetween([1, 1], [1, 1])).toBeNull();
   });
 
   it("scale along their axes, round ones by the axis scaled most, never to zero", () => {
@@ -77,9 +77,9 @@ describe("shapes", () => {
   });
 
   it("keep their lowest point in place while they are upright", () => {
-    expect(resizeChange(createEntity({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
+    expect(createResizeChange(createEntity({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
     const tiltedBox = createEntity({ name: "box", pose: [0, 0, 0.5, 0.1, 0, 0] });
-    expect(resizeChange(tiltedBox, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
+    expect(createResizeChange(tiltedBox, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
   });
 });
 

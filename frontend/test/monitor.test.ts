@@ -2,11 +2,11 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { LogLine, PageMessage } from "../src/protocol";
 import { formatBandwidth, formatRate } from "../src/state/monitor/figure-text";
-import { levelOf, formatLine, LogState, MAX_LINES } from "../src/state/monitor/log";
+import { levelOf, formatLine, LogState, MAX_RECORDS } from "../src/state/monitor/log";
 import { ParametersState } from "../src/state/monitor/parameters";
 import { formatParameter, parseParameter } from "../src/state/monitor/parameter-text";
 import { TeleopState } from "../src/state/monitor/teleop";
-import { motionOfKey, STILL, computeDeflection, sumOf } from "../src/state/monitor/teleop-keys";
+import { motionOfKey, NO_MOTION, computeDeflection, sumMotions } from "../src/state/monitor/teleop-keys";
 import { TopicsState } from "../src/state/monitor/topics";
 
 let sentMessages: PageMessage[];
@@ -86,7 +86,7 @@ describe("parameters", () => {
   it("are those of the selected node", () => {
     const parameters = new ParametersState(connection);
     parameters.watch(true);
-    parameters.choose("/a");
+    parameters.chooseNode("/a");
     connection.message.emit({ type: "node_parameters", node: "/b", parameters: [], error: null });
     expect(parameters.parameters).toBeNull();
     connection.message.emit({ type: "node_parameters", node: "/a", parameters: [], error: null });
@@ -131,7 +131,7 @@ describe("the log", () => {
     for (let block = 0; block < 45; block++) {
       receive(Array.from({ length: 1000 }, (_, index) => createLine({ message: String(block * 1000 + index) })), 1);
     }
-    expect(log.lines.length).toBeLessThanOrEqual(MAX_LINES);
+    expect(log.lines.length).toBeLessThanOrEqual(MAX_RECORDS);
     expect(log.shownLines).toHaveLength(log.lines.length);
     expect(log.shownLines.at(-1)?.message).toBe("44999");
     expect(log.missedCount).toBe(45);
@@ -149,14 +149,14 @@ describe("driving", () => {
     sentMessages.flatMap((message) => (message.type === "drive" ? [[message.linear[0] ?? 0, message.angular[2] ?? 0]] : []));
 
   it("by keys works as in teleop_twist_keyboard", () => {
-    expect(motionOfKey("i", false)).toEqual({ ...STILL, x: 1 });
-    expect(motionOfKey("m", false)).toEqual({ ...STILL, x: -1, turn: -1 });
-    expect(motionOfKey(".", false)).toEqual({ ...STILL, x: -1, turn: 1 });
-    expect(motionOfKey("J", true)).toEqual({ ...STILL, y: 1 });
-    expect(motionOfKey("ArrowLeft", true)).toEqual({ ...STILL, y: 1 });
-    expect(motionOfKey("a", false)).toEqual({ ...STILL, turn: 1 });
+    expect(motionOfKey("i", false)).toEqual({ ...NO_MOTION, x: 1 });
+    expect(motionOfKey("m", false)).toEqual({ ...NO_MOTION, x: -1, turn: -1 });
+    expect(motionOfKey(".", false)).toEqual({ ...NO_MOTION, x: -1, turn: 1 });
+    expect(motionOfKey("J", true)).toEqual({ ...NO_MOTION, y: 1 });
+    expect(motionOfKey("ArrowLeft", true)).toEqual({ ...NO_MOTION, y: 1 });
+    expect(motionOfKey("a", false)).toEqual({ ...NO_MOTION, turn: 1 });
     expect(motionOfKey("x", false)).toBeNull();
-    expect(sumOf([motionOfKey("w", false)!, motionOfKey("i", false)!, motionOfKey("a", false)!])).toEqual({ ...STILL, x: 1, turn: 1 });
+    expect(sumMotions([motionOfKey("w", false)!, motionOfKey("i", false)!, motionOfKey("a", false)!])).toEqual({ ...NO_MOTION, x: 1, turn: 1 });
   });
 
   it("by a stick has a dead zone in the middle", () => {
@@ -169,15 +169,15 @@ describe("driving", () => {
     teleop.setOpen(true);
     expect(sentMessages.at(-1)).toEqual({ type: "aim_teleop", target: { topic: "/cmd_vel", kind: "auto", frame_id: "base_link" } });
     teleop.configure({ linear: 2, angular: 3 });
-    teleop.move("keys", { ...STILL, x: 1 });
+    teleop.move("keys", { ...NO_MOTION, x: 1 });
     vi.advanceTimersByTime(500);
     expect(listDrives()).toHaveLength(11);
     expect(listDrives()[0]).toEqual([2, 0]);
-    teleop.move("pad", { ...STILL, turn: -0.5 });
+    teleop.move("pad", { ...NO_MOTION, turn: -0.5 });
     vi.advanceTimersByTime(50);
     expect(listDrives().at(-1)).toEqual([2, -1.5]);
-    teleop.move("keys", STILL);
-    teleop.move("pad", STILL);
+    teleop.move("keys", NO_MOTION);
+    teleop.move("pad", NO_MOTION);
     vi.advanceTimersByTime(500);
     expect(listDrives().filter(([x, turn]) => x === 0 && turn === 0)).toHaveLength(1);
     expect(listDrives().at(-1)).toEqual([0, 0]);
@@ -186,13 +186,13 @@ describe("driving", () => {
   it("stops when the panel is closed or the connection is lost", () => {
     const teleop = new TeleopState(connection, storage);
     teleop.setOpen(true);
-    teleop.move("keys", { ...STILL, x: 1 });
+    teleop.move("keys", { ...NO_MOTION, x: 1 });
     teleop.setOpen(false);
     expect(sentMessages.slice(-2).map(({ type }) => type)).toEqual(["drive", "aim_teleop"]);
     teleop.setOpen(true);
-    teleop.move("keys", { ...STILL, x: 1 });
+    teleop.move("keys", { ...NO_MOTION, x: 1 });
     connection.stateChanged.emit("reconnecting");
-    expect(teleop.motion).toEqual(STILL);
+    expect(teleop.motion).toEqual(NO_MOTION);
     const count = listDrives().length;
     vi.advanceTimersByTime(500);
     expect(listDrives()).toHaveLength(count);

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { NodeGraph } from "../src/protocol";
 import { layOutLayers, type Layout, type Link } from "../src/state/monitor/graph-layout";
 import { buildGraph, type GraphOptions } from "../src/state/monitor/graph-model";
-import { isotonic } from "../src/state/monitor/isotonic";
+import { fitIsotonic } from "../src/state/monitor/isotonic";
 
 const createBox = (id: string): { id: string; width: number; height: number } => ({ id, width: 100, height: 28 });
 const createLink = (source: string, target: string): Link => ({ source, target });
@@ -86,8 +86,8 @@ describe("the layout", () => {
 });
 
 describe("averaging unordered neighbors", () => {
-  it("does not change ordered values", () => expect(isotonic([1, 2, 2, 5])).toEqual([1, 2, 2, 5]));
-  it("averages values out of order", () => expect(isotonic([3, 1, 2, 10])).toEqual([2, 2, 2, 10]));
+  it("does not change ordered values", () => expect(fitIsotonic([1, 2, 2, 5])).toEqual([1, 2, 2, 5]));
+  it("averages values out of order", () => expect(fitIsotonic([3, 1, 2, 10])).toEqual([2, 2, 2, 10]));
 });
 
 const GRAPH: NodeGraph = {

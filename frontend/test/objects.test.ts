@@ -19,7 +19,7 @@ import { CopyBatch } from "../src/scene/objects/copy-batch";
 import { CovarianceBatch, type CovarianceStyle } from "../src/scene/objects/covariance-batch";
 import { computePrincipalAxes } from "../src/scene/objects/eigen";
 import { createSphere, createCone, createCube, createRod } from "../src/scene/objects/geometries";
-import { createRibbons, segmentsOf, stripsOf } from "../src/scene/objects/ribbons";
+import { createRibbons, splitIntoSegments, splitIntoStrips } from "../src/scene/objects/ribbons";
 
 interface BoundedBatch {
   expandBox(box: Box3): void;
@@ -167,8 +167,8 @@ describe("ribbons", () => {
 
   it("convert from segments and back", () => {
     const strip = new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0]);
-    expect([...segmentsOf(strip)]).toEqual([0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0]);
-    expect(stripsOf(segmentsOf(strip))).toHaveLength(2);
+    expect([...splitIntoSegments(strip)]).toEqual([0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0]);
+    expect(splitIntoStrips(splitIntoSegments(strip))).toHaveLength(2);
   });
 });
 

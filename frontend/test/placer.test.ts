@@ -15,7 +15,7 @@ let placer: Placer;
 /** A canvas seen from above, with one meter per pixel. */
 function sendPointer(type: ToolEvent["type"], x: number, y: number, part: Partial<ToolEvent> = {}): boolean {
   const button = type === "move" ? null : "left";
-  const defaults = { dx: 0, dy: 0, wheel: 0, left: type !== "up", middle: false, right: false, shift: false, ctrl: false, alt: false, click: false };
+  const defaults = { dx: 0, dy: 0, wheel: 0, isLeftDown: type !== "up", isMiddleDown: false, isRightDown: false, isShiftDown: false, isCtrlDown: false, isAltDown: false, isClick: false };
   return placer.onPointer({ type, x, y, button, ...defaults, ...part });
 }
 
@@ -33,8 +33,8 @@ describe("placing entities in the world", () => {
   it("takes a click, snapped to the grid unless Ctrl is held; Shift continues placing", () => {
     modeling.startPlacing({ kind: "sphere", address: "" });
     sendPointer("down", 1.04, 2);
-    sendPointer("up", 1.04, 2, { click: true, shift: true });
-    sendPointer("up", 1.04, 2, { click: true, ctrl: true });
+    sendPointer("up", 1.04, 2, { isClick: true, isShiftDown: true });
+    sendPointer("up", 1.04, 2, { isClick: true, isCtrlDown: true });
     expect(sentMessages).toEqual([
       { type: "add_entity", shape: "sphere", address: "", pose: [1, 2, 0.25, 0, 0, 0], size: [0.25] },
       { type: "add_entity", shape: "sphere", address: "", pose: [1.04, 2, 0.25, 0, 0, 0], size: [0.25] },
@@ -57,9 +57,9 @@ describe("placing entities in the world", () => {
     sendPointer("up", 4, 0);
     expect(sentMessages).toEqual([{ type: "add_entity", shape: "wall", address: "", pose: [2, 0, 0.5, 0, 0, 0], size: [4, 0.1, 1] }]);
     sendPointer("down", 4, 0);
-    sendPointer("up", 4, 0, { click: true });
+    sendPointer("up", 4, 0, { isClick: true });
     sendPointer("down", 4, 3);
-    sendPointer("up", 4, 3, { click: true });
+    sendPointer("up", 4, 3, { isClick: true });
     expect(sentMessages.at(-1)).toMatchObject({ pose: [4, 1.5, 0.5, 0, 0, Math.PI / 2], size: [3, 0.1, 1] });
     expect(modeling.placing?.kind).toBe("wall");
   });

@@ -1,9 +1,9 @@
 import { expect, test } from "vitest";
 import { describePoint } from "../src/scene/displays/cloud-description";
-import { mapPalette } from "../src/scene/displays/map-palette";
+import { createMapPalette } from "../src/scene/displays/map-palette";
 import { findNearestPoint } from "../src/scene/objects/nearest-point";
 import { createCameraPose, computeZoom, createProjection } from "../src/scene/images/camera-projection";
-import { rgbaOf } from "../src/scene/images/image-canvas";
+import { convertToRgba } from "../src/scene/images/image-canvas";
 import { isShownInCamera } from "../src/scene/images/shown-in-camera";
 import { DisplayState } from "../src/state/displays";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
@@ -44,7 +44,7 @@ function readColor(palette: Uint8Array, value: number): number[] {
 }
 
 test("maps have RViz's shades of gray", () => {
-  const map = mapPalette("map", null);
+  const map = createMapPalette("map", null);
   expect([0, 50, 100].map((value) => readColor(map, value)[0])).toEqual([255, 128, 0]);
   expect(readColor(map, 101)).toEqual([0, 255, 0, 255]);
   expect(readColor(map, 128)).toEqual([255, 0, 0, 255]);
@@ -53,7 +53,7 @@ test("maps have RViz's shades of gray", () => {
 });
 
 test("costmaps range from blue to red, with transparent free cells and marked obstacles", () => {
-  const costmap = mapPalette("costmap", null);
+  const costmap = createMapPalette("costmap", null);
   expect(readColor(costmap, 0)).toEqual([0, 0, 0, 0]);
   expect(readColor(costmap, 1)).toEqual([2, 0, 253, 255]);
   expect(readColor(costmap, 98)).toEqual([249, 0, 6, 255]);
@@ -62,17 +62,17 @@ test("costmaps range from blue to red, with transparent free cells and marked ob
 });
 
 test("a threshold makes cells free or occupied", () => {
-  expect([49, 50].map((value) => readColor(mapPalette("map", 50), value)[0])).toEqual([255, 0]);
-  expect(readColor(mapPalette("costmap", 50), 0)).toEqual([0, 0, 255, 255]);
-  expect(readColor(mapPalette("costmap", 50), 50)).toEqual([255, 0, 0, 255]);
-  expect([49, 50, 255].map((value) => readColor(mapPalette("raw", 50), value)[0])).toEqual([0, 255, 255]);
-  expect(readColor(mapPalette("raw", null), 200)).toEqual([200, 200, 200, 255]);
+  expect([49, 50].map((value) => readColor(createMapPalette("map", 50), value)[0])).toEqual([255, 0]);
+  expect(readColor(createMapPalette("costmap", 50), 0)).toEqual([0, 0, 255, 255]);
+  expect(readColor(createMapPalette("costmap", 50), 50)).toEqual([255, 0, 0, 255]);
+  expect([49, 50, 255].map((value) => readColor(createMapPalette("raw", 50), value)[0])).toEqual([0, 255, 255]);
+  expect(readColor(createMapPalette("raw", null), 200)).toEqual([200, 200, 200, 255]);
 });
 
 test("pixels of all encodings are converted to red, green, blue and alpha", () => {
   const frame = { width: 1, height: 1, columns: 1, rows: 1, camera: null, quality: 0, kind: "image_frame" } as const;
   const convert = (encoding: "gray" | "rgb" | "rgba", data: number[]): number[] => [
-    ...rgbaOf({ ...frame, encoding, data: new Uint8Array(data) }),
+    ...convertToRgba({ ...frame, encoding, data: new Uint8Array(data) }),
   ];
   expect(convert("gray", [7])).toEqual([7, 7, 7, 255]);
   expect(convert("rgb", [1, 2, 3])).toEqual([1, 2, 3, 255]);

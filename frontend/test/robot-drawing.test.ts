@@ -1,9 +1,9 @@
 import { Box3, PerspectiveCamera, Raycaster, Vector3 } from "three";
 import { describe, expect, it, vi } from "vitest";
 import type { LinkScene, Shape } from "../src/protocol";
-import { PICKABLE } from "../src/scene/layers";
+import { PICKABLE_LAYER } from "../src/scene/layers";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
-import { framePose } from "../src/scene/pose";
+import { readFramePose } from "../src/scene/pose";
 import { RobotDrawing } from "../src/scene/robot/robot-drawing";
 import { FrameStore } from "../src/state/frames";
 import { MeshProgress } from "../src/state/mesh-progress";
@@ -51,7 +51,7 @@ function createRobot(links: LinkScene[]): { drawing: RobotDrawing; frames: Frame
 
 function draw({ drawing, frames }: ReturnType<typeof createRobot>, rows = new PropertyRows([])): Record<string, unknown> {
   drawing.applyStyle(rows, false);
-  drawing.updatePoses((link, matrix) => framePose(frames, frames.rowOf(link.frame), matrix));
+  drawing.updatePoses((link, matrix) => readFramePose(frames, frames.rowOf(link.frame), matrix));
   drawing.chooseDetail(cameraAt(5));
   return drawing.inspect() as Record<string, unknown>;
 }
@@ -141,7 +141,7 @@ describe("RobotDrawing", () => {
     row.drawing.root.updateMatrixWorld(true);
     const ray = new Raycaster(new Vector3(5, 0, 0), new Vector3(-1, 0, 0));
     expect(row.drawing.pick(ray)).toBeNull();
-    ray.layers.enable(PICKABLE);
+    ray.layers.enable(PICKABLE_LAYER);
     const hit = row.drawing.pick(ray);
     expect(hit?.key).toBe("box");
     expect(hit?.point.x).toBeCloseTo(1.1);

@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import { createDetailRows } from "../src/panels/displays/detail-rows";
-import { createDisplayRows, linkOfKey, linkRowPath } from "../src/panels/displays/robot-rows";
+import { createDisplayRows, findLinkOfRow, findLinkRowPath } from "../src/panels/displays/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
 import { composePoses, computeRelativePose } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
@@ -155,14 +155,14 @@ describe("a robot's rows", () => {
   it("are found by their link", () => {
     showRobot("Tree of links and joints");
     const [model] = session.displays.displays;
-    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
-    expect(linkOfKey(session, "d0/Links/arm")).toEqual({ display: model, link: "arm" });
-    expect(linkOfKey(session, "d0/Links/All Links Enabled")).toBeNull();
+    expect(findLinkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/base", "d0/Joints/elbow", "d0/Links/arm"]);
+    expect(findLinkOfRow(session, "d0/Links/arm")).toEqual({ display: model, link: "arm" });
+    expect(findLinkOfRow(session, "d0/Links/All Links Enabled")).toBeNull();
     showRobot("Joints in Alphabetic Order");
-    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
-    expect(linkRowPath(model!, session, "base")).toBeNull();
+    expect(findLinkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Joints/elbow"]);
+    expect(findLinkRowPath(model!, session, "base")).toBeNull();
     showRobot("Links in Alphabetic Order");
-    expect(linkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
+    expect(findLinkRowPath(model!, session, "arm")).toEqual(["d0", "d0/Links", "d0/Links/arm"]);
   });
 });
 

@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
 import { createSocketUrl } from "../src/connection/connection";
 import { addressFor, hasOwnDisplays, ensureOwnKey } from "../src/shell/own-displays";
-import { chooseSaved } from "../src/shell/file-keys";
+import { chooseSaveTarget } from "../src/shell/file-keys";
 import { ThemeState } from "../src/state/theme";
-import { formatShortcut, matches, SHORTCUTS } from "../src/widgets/shortcuts";
+import { formatShortcut, matchesShortcut, SHORTCUTS } from "../src/widgets/shortcuts";
 
 function createStorage(): { getItem(key: string): string | null; setItem(key: string, text: string): void } {
   const texts = new Map<string, string>();
@@ -36,13 +36,13 @@ describe("shortcuts", () => {
     ({ key: "", code: "", ctrlKey: false, metaKey: false, shiftKey: false, altKey: false, ...part }) as KeyboardEvent;
 
   it("match exactly the modifiers that are pressed", () => {
-    expect(matches(createEvent({ key: "s", ctrlKey: true }), SHORTCUTS.save)).toBe(true);
-    expect(matches(createEvent({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.save)).toBe(false);
-    expect(matches(createEvent({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.saveAs)).toBe(true);
-    expect(matches(createEvent({ key: "s" }), SHORTCUTS.save)).toBe(false);
-    expect(matches(createEvent({ key: "å", code: "KeyA", altKey: true }), SHORTCUTS.add)).toBe(true);
-    expect(matches(createEvent({ key: "Delete" }), SHORTCUTS.remove)).toBe(true);
-    expect(matches(createEvent({ key: "Delete", ctrlKey: true }), SHORTCUTS.remove)).toBe(false);
+    expect(matchesShortcut(createEvent({ key: "s", ctrlKey: true }), SHORTCUTS.save)).toBe(true);
+    expect(matchesShortcut(createEvent({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.save)).toBe(false);
+    expect(matchesShortcut(createEvent({ key: "S", ctrlKey: true, shiftKey: true }), SHORTCUTS.saveAs)).toBe(true);
+    expect(matchesShortcut(createEvent({ key: "s" }), SHORTCUTS.save)).toBe(false);
+    expect(matchesShortcut(createEvent({ key: "å", code: "KeyA", altKey: true }), SHORTCUTS.add)).toBe(true);
+    expect(matchesShortcut(createEvent({ key: "Delete" }), SHORTCUTS.remove)).toBe(true);
+    expect(matchesShortcut(createEvent({ key: "Delete", ctrlKey: true }), SHORTCUTS.remove)).toBe(false);
   });
 
   it("do not include those reserved by browsers", () => {
@@ -85,19 +85,19 @@ describe("the key of Save", () => {
   const UNCHANGED = { focus: "elsewhere", isEditing: false, hasUnsavedSources: false, isConfigurationUnsaved: false } as const;
 
   it("saves the configuration, as in RViz, where no source files are edited", () => {
-    expect(chooseSaved(UNCHANGED)).toBe("configuration");
+    expect(chooseSaveTarget(UNCHANGED)).toBe("configuration");
   });
 
   it("saves changed source files, wherever the focus is but in panels of the configuration", () => {
     const changed = { ...UNCHANGED, isEditing: true, hasUnsavedSources: true, isConfigurationUnsaved: true };
-    expect(chooseSaved(changed)).toBe("sources");
-    expect(chooseSaved({ ...changed, focus: "configuration" })).toBe("configuration");
-    expect(chooseSaved({ ...changed, hasUnsavedSources: false })).toBe("configuration");
-    expect(chooseSaved({ ...changed, hasUnsavedSources: false, focus: "editor" })).toBe("sources");
+    expect(chooseSaveTarget(changed)).toBe("sources");
+    expect(chooseSaveTarget({ ...changed, focus: "configuration" })).toBe("configuration");
+    expect(chooseSaveTarget({ ...changed, hasUnsavedSources: false })).toBe("configuration");
+    expect(chooseSaveTarget({ ...changed, hasUnsavedSources: false, focus: "editor" })).toBe("sources");
   });
 
   it("asks for no name of an unchanged configuration while source files are edited", () => {
-    expect(chooseSaved({ ...UNCHANGED, isEditing: true })).toBe("sources");
-    expect(chooseSaved({ ...UNCHANGED, isEditing: true, focus: "configuration" })).toBe("configuration");
+    expect(chooseSaveTarget({ ...UNCHANGED, isEditing: true })).toBe("sources");
+    expect(chooseSaveTarget({ ...UNCHANGED, isEditing: true, focus: "configuration" })).toBe("configuration");
   });
 });

@@ -23,21 +23,21 @@ it("reports reduced content and its rate until complete content arrives", () => 
   const onChanged = vi.fn();
   connection.changed.on(onChanged);
   data.received.emit(createCloud(1));
-  expect(connection.reduced).toEqual([]);
+  expect(connection.reducedDisplays).toEqual([]);
   expect(onChanged).not.toHaveBeenCalled();
   for (now = 0; now <= 1000; now += 250) data.received.emit(createCloud(8));
-  expect(connection.reduced).toEqual([{ display: "cloud", reduction: { kind: "points", step: 8 }, rate: 4 }]);
+  expect(connection.reducedDisplays).toEqual([{ display: "cloud", reduction: { kind: "points", step: 8 }, rate: 4 }]);
   data.received.emit(createCloud(1));
-  expect(connection.reduced).toEqual([]);
+  expect(connection.reducedDisplays).toEqual([]);
 });
 
 it("drops displays that are no longer drawn", () => {
   const data = createStore();
   const connection = new SlowConnection(data as unknown as DisplayDataStore, () => 0);
   data.received.emit(createCloud(2));
-  expect(connection.reduced[0]?.rate).toBeNull();
+  expect(connection.reducedDisplays[0]?.rate).toBeNull();
   data.removed.emit({ display: "cloud", key: null });
-  expect(connection.reduced).toEqual([]);
+  expect(connection.reducedDisplays).toEqual([]);
 });
 
 it("does not report images with invisible loss", () => {
@@ -47,9 +47,9 @@ it("does not report images with invisible loss", () => {
     kind: "image_frame", width: 64, height: 48, columns: 64, rows: 48, encoding: "file", data: new Uint8Array(9), camera: null, quality,
   });
   data.received.emit({ ...createCloud(1), content: createImage(85) });
-  expect(connection.reduced).toEqual([]);
+  expect(connection.reducedDisplays).toEqual([]);
   data.received.emit({ ...createCloud(1), content: createImage(70) });
-  expect(connection.reduced).toHaveLength(1);
+  expect(connection.reducedDisplays).toHaveLength(1);
 });
 
 it("is not blamed for a page that was slow a moment ago", () => {

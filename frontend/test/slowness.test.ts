@@ -2,7 +2,7 @@ import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import type { Connection } from "../src/connection/connection";
 import type { ServerMessage } from "../src/protocol";
 import { Signal } from "../src/signal";
-import type { Reduced } from "../src/state/slow-connection";
+import type { ReducedDisplay } from "../src/state/slow-connection";
 import { Slowness } from "../src/state/slowness";
 
 beforeEach(() => {
@@ -17,11 +17,11 @@ afterEach(() => {
 function createSlowness(pace = { isSlow: false }) {
   const listeners = new Map<string, (message: ServerMessage) => void>();
   const connection = { on: (type: string, listener: (message: ServerMessage) => void) => listeners.set(type, listener) };
-  const slowConnection = { changed: new Signal(), reduced: [] as Reduced[] };
+  const slowConnection = { changed: new Signal(), reducedDisplays: [] as ReducedDisplay[] };
   let delay = 0;
   const slowness = new Slowness(slowConnection, pace, connection as unknown as Connection, () => Date.now() + delay);
   const reduceDisplays = (displays: readonly string[]): void => {
-    slowConnection.reduced = displays.map((display) => ({ display, reduction: { kind: "points", step: 2 }, rate: null }));
+    slowConnection.reducedDisplays = displays.map((display) => ({ display, reduction: { kind: "points", step: 2 }, rate: null }));
     slowConnection.changed.emit();
   };
   /** Delays the page's timers by this time. */

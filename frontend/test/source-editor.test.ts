@@ -1,10 +1,10 @@
 import { EditorState, type TransactionSpec } from "@codemirror/state";
 import { describe, expect, it } from "vitest";
-import { findSmallestChange, textOf } from "../src/panels/source-editor/document-changes";
+import { findSmallestChange, toText } from "../src/panels/source-editor/document-changes";
 import { detectIndentation, languageOf } from "../src/panels/source-editor/languages";
 import { isWithinMessageSize } from "../src/panels/source-editor/message-size";
-import { colorOf, hexOf, decodeTokens } from "../src/panels/source-editor/server-meanings";
-import { pathOf, offsetOf, rangeText } from "../src/panels/source-editor/server-places";
+import { parseHex, toHex, decodeTokens } from "../src/panels/source-editor/server-meanings";
+import { pathOf, offsetOf, textOfRange } from "../src/panels/source-editor/server-places";
 import { SourceDocument } from "../src/panels/source-editor/source-document";
 
 const TEXT = "<robot>\n  <link name='a'/>\n  <link name='b'/>\n</robot>\n";
@@ -92,19 +92,19 @@ describe("a document", () => {
   it("finds places of the text that the scene shows, which may be older or newer than the file", () => {
     const document = documentOf();
     typeText(document, "<robot>\n", "<robot>\n\n\n");
-    document.beginShowing(1);
-    document.endShowing(1, true);
+    document.recordSent(1);
+    document.recordShown(1, true);
     expect(document.describedLineOf(document.currentLineOf(5))).toBe(5);
     typeText(document, "<robot>\n", "<robot>\n\n");
-    document.beginShowing(2);
-    document.endShowing(2, false); // it has errors
+    document.recordSent(2);
+    document.recordShown(2, false); // it has errors
     expect(document.state.doc.lineAt(document.currentLineOf(5)).number).toBe(6);
   });
 
   it("takes over an edit of the robot beside what was typed since, and not in the same place", () => {
     const document = documentOf();
     typeText(document, "'a'", "'c'");
-    document.beginShowing(1);
+    document.recordSent(1);
     typeText(document, "'c'", "'d'");
     apply(document, document.onRobotEdited(TEXT.replace("'a'", "'c'").replace("'b'", "'moved'"), 1));
     expect(readText(document)).toBe("<robot>\n  <link name='d'/>\n  <link name='moved'/>\n</robot>\n");
@@ -114,12 +114,12 @@ describe("a document", () => {
 });
 
 it("the smallest change replaces one range", () => {
-  const [textBefore, textAfter] = [textOf("one two three"), textOf("one 2 three")];
+  const [textBefore, textAfter] = [toText("one two three"), toText("one 2 three")];
   const parts: unknown[] = [];
   findSmallestChange(textBefore, textAfter).iterChanges((start, end, _a, _b, text) => parts.push([start, end, text.toString()]));
   expect(parts).toEqual([[4, 7, "2"]]);
   expect(findSmallestChange(textBefore, textBefore).empty).toBe(true);
-  expect(findSmallestChange(textOf("aa"), textOf("aaa")).apply(textOf("aa")).toString()).toBe("aaa");
+  expect(findSmallestChange(toText("aa"), toText("aaa")).apply(toText("aa")).toString()).toBe("aaa");
 });
 
 it("paths come from URIs of files only", () => {
@@ -134,13 +134,13 @@ it("languages and indentation follow the file", () => {
 });
 
 it("positions beyond a line or text are its end", () => {
-  const text = textOf("ab\nc");
+  const text = toText("ab\nc");
   expect([offsetOf(text, { line: 0, character: 9 }), offsetOf(text, { line: 1, character: 1 }), offsetOf(text, { line: 7, character: 0 })]).toEqual([2, 4, 4]);
 });
 
 it("the text of a range counts in UTF-16", () => {
-  const text = textOf("x = 1\n名😀 = name");
-  expect(rangeText(text, { start: { line: 1, character: 6 }, end: { line: 1, character: 10 } })).toBe("name");
+  const text = toText("x = 1\n名😀 = name");
+  expect(textOfRange(text, { start: { line: 1, character: 6 }, end: { line: 1, character: 10 } })).toBe("name");
 });
 
 it("a message with a text has at most a megabyte", () => {
@@ -149,7 +149,7 @@ it("a message with a text has at most a megabyte", () => {
 
 it("semantic tokens are relative to the token before", () => {
   const legend = { tokenTypes: ["macro", "variable"], tokenModifiers: ["definition"] };
-  const ranges = decodeTokens(textOf("one two\n  three"), [0, 0, 3, 0, 1, 0, 4, 3, 1, 0, 1, 2, 5, 0, 0], legend);
+  const ranges = decodeTokens(toText("one two\n  three"), [0, 0, 3, 0, 1, 0, 4, 3, 1, 0, 1, 2, 5, 0, 0], legend);
   expect(ranges).toEqual([
     { from: 0, to: 3, names: ["macro", "definition"] },
     { from: 4, to: 7, names: ["variable"] },
@@ -158,6 +158,6 @@ it("semantic tokens are relative to the token before", () => {
 });
 
 it("colors are written as the browser's field has them, and read back", () => {
-  expect(hexOf({ red: 0.2, green: 0.6, blue: 1, alpha: 0.5 })).toBe("#3399ff");
-  expect(colorOf("#3399ff")).toEqual({ red: 0.2, green: 0.6, blue: 1, alpha: 1 });
+  expect(toHex({ red: 0.2, green: 0.6, blue: 1, alpha: 0.5 })).toBe("#3399ff");
+  expect(parseHex("#3399ff")).toEqual({ red: 0.2, green: 0.6, blue: 1, alpha: 1 });
 });

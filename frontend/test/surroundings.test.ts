@@ -9,35 +9,35 @@ describe("sky and fog", () => {
   it("exist for worlds that have them, and are created once", () => {
     const scene = new Scene();
     const skyAndFog = new SkyAndFog(scene);
-    skyAndFog.set({ ...NONE, daylight: 1, fog: FOG }, false);
+    skyAndFog.apply({ ...NONE, daylight: 1, fog: FOG }, false);
     const { background, fog } = scene;
     expect(background).toBeInstanceOf(DataTexture);
     expect(fog).toBeInstanceOf(Fog);
     expect(fog).toMatchObject({ near: 2, far: 9 });
-    skyAndFog.set({ ...NONE, daylight: 1, fog: { ...FOG } }, false);
+    skyAndFog.apply({ ...NONE, daylight: 1, fog: { ...FOG } }, false);
     expect(scene.background).toBe(background);
     expect(scene.fog).toBe(fog);
-    skyAndFog.set({ ...NONE, daylight: 0, fog: { ...FOG, density: 0.5 } }, false);
+    skyAndFog.apply({ ...NONE, daylight: 0, fog: { ...FOG, density: 0.5 } }, false);
     expect(scene.background).not.toBe(background);
     expect(scene.fog).toBeInstanceOf(FogExp2);
-    skyAndFog.set(NONE, false);
+    skyAndFog.apply(NONE, false);
     expect([scene.background, scene.fog]).toEqual([null, null]);
   });
 
   it("have one color for an orthographic camera", () => {
     const scene = new Scene();
-    new SkyAndFog(scene).set({ ...NONE, daylight: 1 }, true);
+    new SkyAndFog(scene).apply({ ...NONE, daylight: 1 }, true);
     expect(scene.background).toBeInstanceOf(Color);
   });
 
   it("are a backdrop in a studio, with its color at the zenith and a brighter horizon", () => {
     const scene = new Scene();
     const skyAndFog = new SkyAndFog(scene);
-    skyAndFog.set({ ...NONE, backdrop: "#303030" }, false);
+    skyAndFog.apply({ ...NONE, backdrop: "#303030" }, false);
     const { data } = (scene.background as DataTexture).image as { data: Uint8Array };
     const [horizon = 0, zenith = 0] = [data[data.length / 2], data[data.length - 4]];
     expect(horizon).toBeGreaterThan(zenith + 20);
-    skyAndFog.set({ ...NONE, backdrop: "#303030" }, true);
+    skyAndFog.apply({ ...NONE, backdrop: "#303030" }, true);
     expect(scene.background).toBeNull();
   });
 });

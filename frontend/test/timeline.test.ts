@@ -57,7 +57,7 @@ describe("the timeline", () => {
     connection.message.emit(createPlayhead({ live: true }));
     connection.message.emit({ type: "history_extent", start: 105, end: 120, size: 5e6, max_size: 1e7 });
     expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([true, true, 120]);
-    timeline.play(false);
+    timeline.setPlaying(false);
     connection.message.emit(createPlayhead({ position: 119 }));
     expect([timeline.isPlaying, timeline.isLive, timeline.position]).toEqual([false, false, 119]);
     expect(formatAge(1)).toBe("−0:01.000");

@@ -33,14 +33,14 @@ describe("the tools", () => {
     expect(tools.current?.id).toBe("Measure");
     tools.toggle(measure!);
     expect(tools.current?.id).toBe("Interact");
-    tools.choose(unknown!);
+    tools.activate(unknown!);
     expect(tools.current?.id).toBe("Interact");
   });
 
   it("keep the active tool while the list changes, as long as it exists", () => {
     const tools = new ToolsState(connection);
     receive({ type: "tools", tools: [createTool("Interact"), createTool("Measure")], classes: [] });
-    tools.choose(tools.tools[1]!);
+    tools.activate(tools.tools[1]!);
     receive({ type: "tools", tools: [createTool("Interact"), createTool("Measure"), createTool("Select")], classes: [] });
     expect(tools.current?.id).toBe("Measure");
     receive({ type: "tools", tools: [createTool("Interact")], classes: [] });

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { FIELD_OF_VIEW, onGround, castRay, type Camera } from "../src/state/views/camera";
+import { FIELD_OF_VIEW_RAD, intersectGround, castRay, type Camera } from "../src/state/views/camera";
 import { controllerOf } from "../src/state/views/catalog";
 import { transformBounds } from "../src/state/views/fit";
 import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
@@ -17,7 +17,7 @@ function controllerNamed(name: string): ViewController {
 }
 
 function createDrag(part: Partial<Drag>): Drag {
-  return { ...SIZE, left: false, middle: false, right: false, shift: false, x: 400, y: 300, dx: 0, dy: 0, ...part };
+  return { ...SIZE, isLeftDown: false, isMiddleDown: false, isRightDown: false, isShiftDown: false, x: 400, y: 300, dx: 0, dy: 0, ...part };
 }
 
 function expectClose(actual: readonly number[], expectedValues: readonly number[], digits = 6): void {
@@ -52,7 +52,7 @@ describe("every view", () => {
   it("changes nothing while no button is pressed", () => {
     for (const name of ["Orbit", "XYOrbit", "FPS", "TopDownOrtho"]) {
       for (const isShiftHeld of [false, true]) {
-        expect(controllerNamed(name).drag(FOCUSED, createDrag({ dx: 10, dy: 10, shift: isShiftHeld })), name).toEqual({});
+        expect(controllerNamed(name).drag(FOCUSED, createDrag({ dx: 10, dy: 10, isShiftDown: isShiftHeld })), name).toEqual({});
       }
     }
   });
@@ -68,24 +68,24 @@ describe("Orbit", () => {
   });
 
   it("rotates 0.005 rad per pixel, wraps the yaw and stops the pitch before the pole", () => {
-    const rotated = ORBIT.drag(FOCUSED, createDrag({ left: true, dx: 10, dy: 4 }));
+    const rotated = ORBIT.drag(FOCUSED, createDrag({ isLeftDown: true, dx: 10, dy: 4 }));
     expectClose([Number(rotated["Yaw"]), Number(rotated["Pitch"])], [5.45, 0.35]);
-    expect(ORBIT.drag({ ...FOCUSED, Yaw: 0.01 }, createDrag({ left: true, dx: 4 }))["Yaw"]).toBeCloseTo(2 * Math.PI - 0.01);
+    expect(ORBIT.drag({ ...FOCUSED, Yaw: 0.01 }, createDrag({ isLeftDown: true, dx: 4 }))["Yaw"]).toBeCloseTo(2 * Math.PI - 0.01);
     const limit = Math.PI / 2 - 0.001;
-    expect(ORBIT.drag(FOCUSED, createDrag({ left: true, dy: 10_000 }))["Pitch"]).toBeCloseTo(limit);
-    expect(ORBIT.drag(FOCUSED, createDrag({ left: true, dy: -10_000 }))["Pitch"]).toBeCloseTo(-limit);
+    expect(ORBIT.drag(FOCUSED, createDrag({ isLeftDown: true, dy: 10_000 }))["Pitch"]).toBeCloseTo(limit);
+    expect(ORBIT.drag(FOCUSED, createDrag({ isLeftDown: true, dy: -10_000 }))["Pitch"]).toBeCloseTo(-limit);
   });
 
   it("pans so that the focal plane follows the pointer", () => {
-    const change = ORBIT.drag(FOCUSED, createDrag({ middle: true, dy: SIZE.height }));
+    const change = ORBIT.drag(FOCUSED, createDrag({ isMiddleDown: true, dy: SIZE.height }));
     const motion = ["X", "Y", "Z"].map((axis) => Number(change[`Focal Point/${axis}`]) - Number(FOCUSED[`Focal Point/${axis}`]));
-    expect(Math.hypot(...motion)).toBeCloseTo(2 * 2 * Math.tan(FIELD_OF_VIEW / 2));
-    expect(ORBIT.drag(FOCUSED, createDrag({ left: true, shift: true, dy: SIZE.height }))).toEqual(change);
+    expect(Math.hypot(...motion)).toBeCloseTo(2 * 2 * Math.tan(FIELD_OF_VIEW_RAD / 2));
+    expect(ORBIT.drag(FOCUSED, createDrag({ isLeftDown: true, isShiftDown: true, dy: SIZE.height }))).toEqual(change);
   });
 
   it("zooms 12 % per notch, and a hundredth of the distance per pixel with the right button", () => {
     expect(ORBIT.applyWheel(FOCUSED, 120, false)["Distance"]).toBeCloseTo(2 * 0.88);
-    expect(ORBIT.drag(FOCUSED, createDrag({ right: true, dy: 10 }))["Distance"]).toBeCloseTo(2 * 1.1);
+    expect(ORBIT.drag(FOCUSED, createDrag({ isRightDown: true, dy: 10 }))["Distance"]).toBeCloseTo(2 * 1.1);
     expect(ORBIT.applyWheel(FOCUSED, 1e6, false)["Distance"]).toBeGreaterThan(0);
   });
 
@@ -114,18 +114,18 @@ describe("XYOrbit", () => {
   });
 
   it("keeps the ground under the pointer, at most one meter per step", () => {
-    const drag = createDrag({ middle: true, dx: 12, dy: -7 });
-    const pointBefore = onGround(castRay(GROUND.computeCamera(values), drag.x, drag.y, SIZE));
+    const drag = createDrag({ isMiddleDown: true, dx: 12, dy: -7 });
+    const pointBefore = intersectGround(castRay(GROUND.computeCamera(values), drag.x, drag.y, SIZE));
     const valuesAfter = { ...values, ...GROUND.drag(values, drag) };
-    expectClose(onGround(castRay(GROUND.computeCamera(valuesAfter), drag.x + 12, drag.y - 7, SIZE)) ?? [], pointBefore ?? [NaN]);
+    expectClose(intersectGround(castRay(GROUND.computeCamera(valuesAfter), drag.x + 12, drag.y - 7, SIZE)) ?? [], pointBefore ?? [NaN]);
     expect(valuesAfter["Focal Point/Z"]).toBe(0);
-    const limitedChange = GROUND.drag(values, createDrag({ middle: true, dy: -300 }));
+    const limitedChange = GROUND.drag(values, createDrag({ isMiddleDown: true, dy: -300 }));
     expect(Math.hypot(Number(limitedChange["Focal Point/X"]) - 1, Number(limitedChange["Focal Point/Y"]) - 2)).toBeLessThanOrEqual(1 + 1e-9);
   });
 
   it("zooms with the wheel and the right button, also with Shift", () => {
     expect(GROUND.applyWheel(values, 120, true)["Distance"]).toBeCloseTo(8.8);
-    expect(GROUND.drag(values, createDrag({ right: true, shift: true, dy: 10 }))["Distance"]).toBeCloseTo(11);
+    expect(GROUND.drag(values, createDrag({ isRightDown: true, isShiftDown: true, dy: 10 }))["Distance"]).toBeCloseTo(11);
   });
 
   it("focuses on the ground below a point", () => {
@@ -141,14 +141,14 @@ describe("FPS", () => {
 
   it("rotates, moves sideways, and flies forward", () => {
     const values: ViewValues = { Yaw: 1, Pitch: 0, "Position/X": 0, "Position/Y": 0, "Position/Z": 1 };
-    const rotated = FLY.drag(values, createDrag({ left: true, dx: 10, dy: 10 }));
+    const rotated = FLY.drag(values, createDrag({ isLeftDown: true, dx: 10, dy: 10 }));
     expectClose([Number(rotated["Yaw"]), Number(rotated["Pitch"])], [0.95, 0.05]);
     const { right } = FLY.computeCamera(values);
-    const sideways = FLY.drag(values, createDrag({ middle: true, dx: 100 }));
+    const sideways = FLY.drag(values, createDrag({ isMiddleDown: true, dx: 100 }));
     expectClose([Number(sideways["Position/X"]), Number(sideways["Position/Y"])], [right[0], right[1]]);
     const forward = FLY.applyWheel(values, 120, false);
     expectClose([Number(forward["Position/X"]), Number(forward["Position/Y"])], [1.2 * Math.cos(1), 1.2 * Math.sin(1)]);
-    expect(FLY.drag(values, createDrag({ right: true, dy: 10 }))["Position/Z"]).toBeCloseTo(1);
+    expect(FLY.drag(values, createDrag({ isRightDown: true, dy: 10 }))["Position/Z"]).toBeCloseTo(1);
   });
 
   it("starts above and looks at the origin", () => {
@@ -163,23 +163,23 @@ describe("TopDownOrtho", () => {
     const values = { Scale: -80, Angle: 0 };
     const { right, up, scale } = MAP.computeCamera(values);
     expectClose([...right, ...up, scale ?? 0], [-1, 0, 0, 0, -1, 0, 80]);
-    expect(MAP.drag(values, createDrag({ middle: true, dx: 8 }))["X"]).toBeCloseTo(0.1);
+    expect(MAP.drag(values, createDrag({ isMiddleDown: true, dx: 8 }))["X"]).toBeCloseTo(0.1);
     expect(MAP.applyWheel(values, 120, false)["Scale"]).toBeCloseTo(-80 * 1.12);
-    expect(MAP.drag(values, createDrag({ right: true, dy: 500 }))["Scale"]).toBeCloseTo(-0.08);
+    expect(MAP.drag(values, createDrag({ isRightDown: true, dy: 500 }))["Scale"]).toBeCloseTo(-0.08);
   });
 
   it("rotates, moves by pixels of its scale, and zooms", () => {
     const values: ViewValues = { Scale: 50, Angle: Math.PI / 2, X: 1, Y: 2 };
-    expect(MAP.drag(values, createDrag({ left: true, dx: 10 }))["Angle"]).toBeCloseTo(Math.PI / 2 + 0.05);
-    const change = MAP.drag(values, createDrag({ middle: true, dx: 50 }));
+    expect(MAP.drag(values, createDrag({ isLeftDown: true, dx: 10 }))["Angle"]).toBeCloseTo(Math.PI / 2 + 0.05);
+    const change = MAP.drag(values, createDrag({ isMiddleDown: true, dx: 50 }));
     expectClose([Number(change["X"]), Number(change["Y"])], [1, 1]);
-    expect(MAP.drag(values, createDrag({ right: true, dy: 10 }))["Scale"]).toBeCloseTo(45);
+    expect(MAP.drag(values, createDrag({ isRightDown: true, dy: 10 }))["Scale"]).toBeCloseTo(45);
     expect(MAP.applyWheel(values, 120, false)["Scale"]).toBeCloseTo(56);
   });
 
   it("maps a pixel to the ground", () => {
     const camera = MAP.computeCamera({ Scale: 100, Angle: 0, X: 1, Y: 2 });
-    expectClose(onGround(castRay(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
+    expectClose(intersectGround(castRay(camera, 500, 200, SIZE)) ?? [], [2, 3, 0]);
   });
 });
 
@@ -228,7 +228,7 @@ describe("a fitted view", () => {
   /** Returns the distances of a box's corners from the center of the canvas, right and up; 1 is the edge. */
   function extentOnCanvas(values: ViewValues, min: Vector, max: Vector, { width, height }: typeof SIZE): [number, number] {
     const camera = ORBIT.computeCamera(values);
-    const edge = Math.tan(FIELD_OF_VIEW / 2);
+    const edge = Math.tan(FIELD_OF_VIEW_RAD / 2);
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i): Vector => {
       return [(i & 1 ? min : max)[0], (i & 2 ? min : max)[1], (i & 4 ? min : max)[2]];
     });
@@ -270,7 +270,7 @@ describe("a fitted view", () => {
       expectClose(projectPoint(camera, [3.2, -0.7, 2.5]), [0, 0]);
       expectClose(camera.back, controllerNamed(name).computeCamera(start).back);
       const [, top] = projectPoint(camera, [3, -1, 3]);
-      expect(Math.abs(top)).toBeLessThan(Math.tan(FIELD_OF_VIEW / 2));
+      expect(Math.abs(top)).toBeLessThan(Math.tan(FIELD_OF_VIEW_RAD / 2));
     }
     expect(MAP.fit({ Scale: 10, Angle: 0 }, box, SIZE)).toEqual({ X: 3.2, Y: -0.7, Scale: expect.closeTo(600 / 0.6 / 1.2) as number });
   });

@@ -59,7 +59,7 @@ describe("gaps", () => {
       const { samples = loudQuantum, lateMs = 0 } = replaceQuantum(number);
       finder.add(samples, 5000 + (number * QUANTUM) / 48 + lateMs);
     }
-    return Math.round(1000 * finder.takeLost());
+    return Math.round(1000 * finder.takeLostSeconds());
   };
 
   it("do not occur in sound on time, in silence, or in late sound that catches up", () => {
@@ -84,8 +84,8 @@ describe("gaps", () => {
   it("are reported once", () => {
     const finder = new GapFinder(48_000);
     for (const samples of [loudQuantum, silentQuantum, loudQuantum]) finder.add(samples, 0);
-    expect(finder.takeLost()).toBeGreaterThan(0);
-    expect(finder.takeLost()).toBe(0);
+    expect(finder.takeLostSeconds()).toBeGreaterThan(0);
+    expect(finder.takeLostSeconds()).toBe(0);
   });
 });
 
@@ -222,11 +222,11 @@ describe("talking", () => {
 
   it("ends when the microphone is removed, and requests it again", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
-    voice.setOpen(true);
+    voice.setAlwaysListening(true);
     await flushPromises();
     expect(listModes()).toEqual(["open"]);
     loseMicrophone();
-    expect([voice.isPanelOpen, voice.microphone.problem, listModes().at(-1)]).toEqual([false, "lost", "off"]);
+    expect([voice.isAlwaysListening, voice.microphone.problem, listModes().at(-1)]).toEqual([false, "lost", "off"]);
     voice.press();
     await flushPromises();
     expect([voice.microphone.problem, listModes().at(-1)]).toEqual([null, "held"]);
@@ -276,7 +276,7 @@ describe("talking", () => {
     const judgeTake = (name: string, code: string | null): void =>
       connection.message.emit({ type: "take_judged", number: 1, name, code, text: "", peak: 0.5, seconds: 0.5 });
     judgeTake("stop", null);
-    wordsState.enrollHere(true);
+    wordsState.setEnrollingHere(true);
     for (const code of [null, "VOICE205", null]) judgeTake("stop", code);
     expect(wordsState.missingHere.map(({ name }) => name)).toEqual(["stop", "forward"]);
     judgeTake("stop", null);

@@ -1,6 +1,6 @@
 import { Box3, BoxGeometry, Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { findFreePlace } from "../src/scene/displays/free-place";
+import { findFreePosition } from "../src/scene/displays/free-position";
 import type { MeshPart } from "../src/scene/meshes/mesh-template";
 import { extrudePolygons, createHeightmap, selectSubmesh } from "../src/scene/objects/world-geometries";
 
@@ -71,19 +71,19 @@ describe("the position proposed for a model", () => {
   const origin = new Matrix4();
 
   it("is the origin, or the nearest free meter", () => {
-    expect(findFreePlace([], origin)).toEqual([0, 0, 0]);
-    expect(findFreePlace([createBox(5, 0, 1)], origin)).toEqual([0, 0, 0]);
-    expect(findFreePlace([createBox(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
-    expect(findFreePlace([createBox(0, 0, 0.4), createBox(1, 0, 0.2)], origin)).toEqual([0, 1, 0]);
-    expect(findFreePlace([createBox(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
+    expect(findFreePosition([], origin)).toEqual([0, 0, 0]);
+    expect(findFreePosition([createBox(5, 0, 1)], origin)).toEqual([0, 0, 0]);
+    expect(findFreePosition([createBox(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
+    expect(findFreePosition([createBox(0, 0, 0.4), createBox(1, 0, 0.2)], origin)).toEqual([0, 1, 0]);
+    expect(findFreePosition([createBox(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
   });
 
   it("is in the world's frame, whatever the fixed frame is", () => {
-    expect(findFreePlace([createBox(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
-    expect(findFreePlace([createBox(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
+    expect(findFreePosition([createBox(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
+    expect(findFreePosition([createBox(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
   });
 
   it("is beyond all objects if nothing near is free", () => {
-    expect(findFreePlace([createBox(0, 0, 60)], origin)).toEqual([31, 0, 0]);
+    expect(findFreePosition([createBox(0, 0, 60)], origin)).toEqual([31, 0, 0]);
   });
 });

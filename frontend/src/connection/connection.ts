@@ -19,8 +19,8 @@ export type ConnectionState = "connecting" | "connected" | "reconnecting" | "end
 const FIRST_RETRY_MS = 250;
 /** Shorter than the time that a restarted server waits for the pages that were open before. */
 const MAX_RETRY_MS = 2000;
-const GOING_AWAY = 1001;
-const UNAUTHORIZED = 401;
+const GOING_AWAY_CODE = 1001;
+const UNAUTHORIZED_STATUS = 401;
 /**
  * Messages of at least this length, in bytes or characters, are acknowledged. The server relies on acknowledgments of
  * longer ones only.
@@ -35,16 +35,16 @@ export class Connection {
   readonly data = new Signal<DisplayData>();
   readonly samples = new Signal<SeriesSamples[]>();
   readonly stateChanged = new Signal<ConnectionState>();
-  private readonly pieces = new FrameAssembler();
+  private readonly frameAssembler = new FrameAssembler();
   private socket: WebSocket | null = null;
   private retryMs = FIRST_RETRY_MS;
   private receivedCount = 0;
-  private shownToken: string | null = null;
+  private sentToken: string | null = null;
   /** The token that the server accepted from this page. */
   private acceptedToken: string | null = null;
   private attemptCount = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
-  private current: ConnectionState = "connecting";
+  private currentState: ConnectionState = "connecting";
 
   /**
    * `url` is the address of the server's WebSocket, without the token; `tokens` is null where the server asks for none.
@@ -70,26 +70,26 @@ export class Connection {
   }
 
   get state(): ConnectionState {
-    return this.current;
+    return this.currentState;
   }
 
   open(): void {
     clearTimeout(this.retryTimer);
-    this.shownToken = this.tokens?.current ?? null;
-    if (this.tokens && this.shownToken === null) {
+    this.sentToken = this.tokens?.current ?? null;
+    if (this.tokens && this.sentToken === null) {
       // The server may accept another page of this browser, whose token this page then uses.
       this.setState("refused");
       this.retryLater();
       return;
     }
     this.attemptCount += 1;
-    if (this.shownToken !== null && this.acceptedToken !== null) void this.reconnect(this.shownToken, this.attemptCount);
+    if (this.sentToken !== null && this.acceptedToken !== null) void this.reconnect(this.sentToken, this.attemptCount);
     else this.connect();
   }
 
   /** Retries immediately instead of waiting for the timer. */
   retryNow(): void {
-    if (this.socket === null && this.attemptCount > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
+    if (this.socket === null && this.attemptCount > 0 && this.currentState !== "connected" && this.currentState !== "outdated") this.open();
   }
 
   /**
@@ -150,8 +150,8 @@ export class Connection {
         return;
       }
       openBrowserStorage("sessionStorage").removeItem(RELOADED_KEY);
-      this.acceptedToken = this.shownToken;
-      if (this.shownToken !== null) this.tokens?.accept(this.shownToken);
+      this.acceptedToken = this.sentToken;
+      if (this.sentToken !== null) this.tokens?.accept(this.sentToken);
       this.retryMs = FIRST_RETRY_MS;
       this.setState("connected");
     }
@@ -160,7 +160,7 @@ export class Connection {
 
   protected receiveBytes(bytes: ArrayBuffer): void {
     if (isPiece(bytes)) {
-      const frame = this.pieces.add(bytes);
+      const frame = this.frameAssembler.add(bytes);
       if (frame) this.receiveBytes(frame);
       return;
     }
@@ -174,9 +174,9 @@ export class Connection {
 
   private onClosed(code: number): void {
     this.socket = null;
-    if (this.current === "outdated") return;
-    if (code === GOING_AWAY) this.setState("ended");
-    else if (this.current === "connected") this.setState("reconnecting");
+    if (this.currentState === "outdated") return;
+    if (code === GOING_AWAY_CODE) this.setState("ended");
+    else if (this.currentState === "connected") this.setState("reconnecting");
     else if (this.receivedCount === 0) void this.findRefusal();
     this.retryLater();
   }
@@ -189,7 +189,7 @@ export class Connection {
   /** The address of the socket, with the token. */
   private get address(): URL {
     const url = new URL(this.url);
-    if (this.shownToken !== null) url.searchParams.set("token", this.shownToken);
+    if (this.sentToken !== null) url.searchParams.set("token", this.sentToken);
     return url;
   }
 
@@ -199,7 +199,7 @@ export class Connection {
     url.protocol = url.protocol === "wss:" ? "https:" : "http:";
     try {
       const { status } = await fetch(url, { cache: "no-store" });
-      if (status !== UNAUTHORIZED || this.socket?.readyState === WebSocket.OPEN) return;
+      if (status !== UNAUTHORIZED_STATUS || this.socket?.readyState === WebSocket.OPEN) return;
       if (this.tokens?.refuse() !== true) this.setState("refused");
     } catch {
       // No server answers.
@@ -218,8 +218,8 @@ export class Connection {
   }
 
   protected setState(state: ConnectionState): void {
-    if (state === this.current) return;
-    this.current = state;
+    if (state === this.currentState) return;
+    this.currentState = state;
     this.stateChanged.emit(state);
   }
 }

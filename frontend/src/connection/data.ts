@@ -10,10 +10,10 @@ export interface DisplayData {
   key: string;
   /** The frame that the content is in; empty for the fixed frame. */
   frame: string;
-  /** Time of the content, s. */
+  /** The time of the content, s. */
   stamp: number;
   /**
-   * Pose of `frame` in the fixed frame at the time of the content, m and xyzw; null if the content follows the frame.
+   * The pose of `frame` in the fixed frame at the time of the content, m and xyzw; null if the content follows `frame`.
    */
   pose: number[] | null;
   content: DataContent;
@@ -26,19 +26,19 @@ export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   if (header.getUint32(0, true) !== DATA_KIND) return null;
   const length = header.getUint32(4, true);
   const text = new TextDecoder().decode(new Uint8Array(buffer, HEADER_BYTES, length));
-  const start = Math.ceil((HEADER_BYTES + length) / ALIGNMENT) * ALIGNMENT;
-  return restoreArrays(JSON.parse(text), (reference) => createView(buffer, start, reference)) as DisplayData;
+  const arraysOffset = Math.ceil((HEADER_BYTES + length) / ALIGNMENT) * ALIGNMENT;
+  return restoreArrays(JSON.parse(text), (reference) => createView(buffer, arraysOffset, reference)) as DisplayData;
 }
 
-type Reference = readonly ["f4" | "u1", number, number];
+type ArrayReference = readonly ["f4" | "u1", number, number];
 
-type Restore = (reference: Reference) => ArrayBufferView;
+type RestoreArray = (reference: ArrayReference) => ArrayBufferView;
 
 /**
  * Replaces references with the arrays that they refer to. This is faster than a reviver of `JSON.parse`, which would
  * visit every number of the thousands of markers that a frame may contain.
  */
-function restoreArrays(value: unknown, restore: Restore): unknown {
+function restoreArrays(value: unknown, restore: RestoreArray): unknown {
   if (typeof value !== "object" || value === null) return value;
   if (Array.isArray(value)) {
     // All items of a list have the same kind, so the first item decides.
@@ -54,15 +54,15 @@ function restoreArrays(value: unknown, restore: Restore): unknown {
   return value;
 }
 
-function isReference(value: object): value is { $: Reference } {
+function isReference(value: object): value is { $: ArrayReference } {
   return "$" in value;
 }
 
-function createView(buffer: ArrayBuffer, start: number, [type, offset, count]: Reference): ArrayBufferView {
+function createView(buffer: ArrayBuffer, arraysOffset: number, [type, offset, count]: ArrayReference): ArrayBufferView {
   switch (type) {
     case "f4":
-      return new Float32Array(buffer, start + offset, count);
+      return new Float32Array(buffer, arraysOffset + offset, count);
     case "u1":
-      return new Uint8Array(buffer, start + offset, count);
+      return new Uint8Array(buffer, arraysOffset + offset, count);
   }
 }

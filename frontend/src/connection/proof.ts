@@ -19,8 +19,8 @@ export async function askForProof(socketUrl: string, token: string): Promise<Ser
   const key = await subtle.importKey("raw", encoder.encode(token), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
   const expectedProof = formatHex(new Uint8Array(await subtle.sign("HMAC", key, encoder.encode(nonce))));
   try {
-    const answer = await fetch(url, { cache: "no-store" });
-    return (await answer.text()) === expectedProof ? "known" : "unknown";
+    const response = await fetch(url, { cache: "no-store" });
+    return (await response.text()) === expectedProof ? "known" : "unknown";
   } catch {
     return "silent";
   }

@@ -1,7 +1,7 @@
 import type { BrowserStorage } from "../storage";
 
 const PARAMETER = "token";
-const KEY = "linkwright.token";
+const STORAGE_KEY = "linkwright.token";
 
 /** The address bar; `moveTo` replaces the address without loading it. */
 export interface AddressBar {
@@ -35,10 +35,10 @@ export class Tokens {
   accept(token: string): void {
     const { address, storage } = this;
     this.use(token);
-    storage.setItem(KEY, token);
+    storage.setItem(STORAGE_KEY, token);
     // Where the browser stores nothing, the token must stay in the address.
-    const isKept = storage.isPersistent && storage.getItem(KEY) === token;
-    if (isKept && readToken(address.href) !== null) address.moveTo(setToken(address.href, null));
+    const isStored = storage.isPersistent && storage.getItem(STORAGE_KEY) === token;
+    if (isStored && readToken(address.href) !== null) address.moveTo(setToken(address.href, null));
   }
 
   /** Records that the current token was refused; returns whether another token remains to be tried. */
@@ -59,7 +59,7 @@ export class Tokens {
   }
 
   private get knownTokens(): string[] {
-    const tokens = [this.ownToken, this.storage.getItem(KEY)].filter((token) => token !== null);
+    const tokens = [this.ownToken, this.storage.getItem(STORAGE_KEY)].filter((token) => token !== null);
     return [...new Set(tokens)];
   }
 }

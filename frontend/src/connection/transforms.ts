@@ -5,13 +5,13 @@ const FLOATS_PER_POSE = 7;
 
 /** The poses of all frames of a table in the fixed frame, from one binary frame. */
 export interface Transforms {
-  /** Revision of the frame table that names the rows. */
+  /** The revision of the frame table that names the rows. */
   revision: number;
-  /** Time of the newest transform, s. */
+  /** The time of the newest transform, s. */
   stamp: number;
   /** One row of seven numbers a frame: x y z (m), qx qy qz qw; NaN for a frame without a transform. */
   poses: Float32Array;
-  /** Seconds since the last transform of each frame; 0 for static frames. */
+  /** The seconds since the last transform of each frame; 0 for static frames. */
   ages: Float32Array;
 }
 

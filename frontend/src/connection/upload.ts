@@ -30,19 +30,19 @@ export class Upload {
   /** Uploads a recording and returns the server's name for it; null if it was cancelled. */
   async send(name: string, files: readonly NamedFile[]): Promise<string | null> {
     const announcement = { name, files: files.map((namedFile) => ({ name: namedFile.name, size: namedFile.file.size })) };
-    this.key = (await this.fetchAnswer("POST", "recordings", JSON.stringify(announcement)))?.key ?? "";
-    let bytesBefore = 0;
+    this.key = (await this.fetchResponse("POST", "recordings", JSON.stringify(announcement)))?.key ?? "";
+    let finishedBytes = 0;
     for (const [number, { file }] of files.entries()) {
-      await this.fetchAnswer("PUT", `recordings/${this.key}/${number}`, file, (sentBytes) => this.onProgress(bytesBefore + sentBytes));
-      bytesBefore += file.size;
+      await this.fetchResponse("PUT", `recordings/${this.key}/${number}`, file, (sentBytes) => this.onProgress(finishedBytes + sentBytes));
+      finishedBytes += file.size;
     }
-    this.onProgress(bytesBefore);
-    return (await this.fetchAnswer("POST", `recordings/${this.key}`, null))?.recording ?? null;
+    this.onProgress(finishedBytes);
+    return (await this.fetchResponse("POST", `recordings/${this.key}`, null))?.recording ?? null;
   }
 
   /** Opens a recording of the server by the address of its file, and returns its name; null if this was cancelled. */
-  async show(file: string): Promise<string | null> {
-    return (await this.fetchAnswer("POST", file, null))?.recording ?? null;
+  async openRecording(file: string): Promise<string | null> {
+    return (await this.fetchResponse("POST", file, null))?.recording ?? null;
   }
 
   cancel(): void {
@@ -52,7 +52,7 @@ export class Upload {
   }
 
   /** Sends a request and returns the server's answer; null once this is cancelled. */
-  private fetchAnswer(method: string, path: string, body: Blob | string | null, onSent?: (bytes: number) => void): Promise<Answer | null> {
+  private fetchResponse(method: string, path: string, body: Blob | string | null, onSent?: (bytes: number) => void): Promise<UploadResponse | null> {
     if (this.isCancelled) return Promise.resolve(null);
     return new Promise((resolve, reject) => {
       const request = new XMLHttpRequest();
@@ -60,9 +60,9 @@ export class Upload {
       request.open(method, this.createAddress(path));
       if (onSent) request.upload.addEventListener("progress", ({ loaded }) => onSent(loaded));
       request.addEventListener("load", () => {
-        const answer = parseAnswer(request.responseText);
-        if (request.status < 300 && answer.problem === undefined) resolve(answer);
-        else reject(new RefusedError(answer.problem ?? request.responseText.trim()));
+        const response = parseResponse(request.responseText);
+        if (request.status < 300 && response.problem === undefined) resolve(response);
+        else reject(new RefusedError(response.problem ?? request.responseText.trim()));
       });
       request.addEventListener("error", () => reject(new RefusedError("")));
       request.addEventListener("abort", () => resolve(null));
@@ -79,15 +79,15 @@ export class Upload {
   }
 }
 
-interface Answer {
+interface UploadResponse {
   key?: string;
   recording?: string;
   problem?: string;
 }
 
-function parseAnswer(text: string): Answer {
+function parseResponse(text: string): UploadResponse {
   try {
-    return JSON.parse(text) as Answer;
+    return JSON.parse(text) as UploadResponse;
   } catch {
     return {};
   }

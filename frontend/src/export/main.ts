@@ -41,13 +41,13 @@ function start(app: HTMLElement, recordedElement: HTMLElement): void {
   session.pageMemory.preserve("positions", () => joints.positions, (positions) => joints.move(positions));
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
-  const column = new CardColumn();
-  column.element.append(new SelectionCard(session, column).element);
-  const overlay = h("div", { class: "overlay" }, column.element, new OrientationSign(session).element);
+  const cardColumn = new CardColumn();
+  cardColumn.element.append(new SelectionCard(session, cardColumn).element);
+  const overlay = h("div", { class: "overlay" }, cardColumn.element, new OrientationSign(session).element);
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = createStage(container, session, new RecordedFiles(recording.files), theme);
-  if (stage) column.connectScene(stage.uncoveredArea);
+  if (stage) cardColumn.connectScene(stage.uncoveredArea);
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
       if (stage) lookFrom(side, session, stage);

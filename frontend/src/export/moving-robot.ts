@@ -31,7 +31,7 @@ export interface FollowingRobot {
  */
 export class MovingRobot {
   private readonly frames: Frame[];
-  private readonly order: readonly number[];
+  private readonly parentsFirst: readonly number[];
   private readonly fixedFrame: { row: number; pose: Matrix4 };
 
   constructor(
@@ -39,11 +39,11 @@ export class MovingRobot {
     recordedTransforms: Transforms,
     robot: RobotScene,
     private readonly controls: readonly JointControl[],
-    following: readonly FollowingRobot[] = [],
+    followers: readonly FollowingRobot[] = [],
   ) {
     const poses = table.names.map((_, row) => poseAt(recordedTransforms.poses, row));
     const identityMap = Object.fromEntries(robot.joints.map(({ name }) => [name, name]));
-    const drivenJoints = new Map([{ robot, joints: identityMap }, ...following].flatMap(findDrivenFrames));
+    const drivenJoints = new Map([{ robot, joints: identityMap }, ...followers].flatMap(findDrivenFrames));
     this.frames = table.names.map((name, row) => {
       const parent = table.parents[row] ?? -1;
       const pose = poses[row] ?? null;
@@ -53,7 +53,7 @@ export class MovingRobot {
       const fixedPose = pose && parentPose ? parentPose.clone().invert().multiply(pose) : (pose?.clone() ?? new Matrix4());
       return { parent, fixedPose, joint, leader: drivenJoint?.leader ?? "" };
     });
-    this.order = sortParentsFirst(this.frames);
+    this.parentsFirst = sortParentsFirst(this.frames);
     // The fixed frame must not move, wherever it is in the tree. It is the frame whose recorded pose is the identity.
     const row = Math.max(0, poses.findIndex((pose) => pose !== null && isIdentity(pose)));
     this.fixedFrame = { row, pose: poses[row]?.clone() ?? new Matrix4() };
@@ -62,7 +62,7 @@ export class MovingRobot {
   /** Returns the transforms of all frames for joint positions, rad or m. */
   computeTransforms(positions: Positions): Transforms {
     const poses = this.frames.map(() => new Matrix4());
-    for (const row of this.order) {
+    for (const row of this.parentsFirst) {
       const { parent, fixedPose, joint, leader } = this.frames[row] as Frame;
       const local = joint ? computeJointPose(joint, this.computePosition(leader, positions)) : fixedPose;
       const parentPose = poses[parent];
@@ -70,13 +70,13 @@ export class MovingRobot {
       if (parentPose) poses[row]?.premultiply(parentPose);
     }
     const shift = this.fixedFrame.pose.clone().multiply((poses[this.fixedFrame.row] ?? new Matrix4()).clone().invert());
-    const numbers = new Float32Array(poses.length * 7);
+    const poseNumbers = new Float32Array(poses.length * 7);
     const [translation, rotation, scale] = [new Vector3(), new Quaternion(), new Vector3()];
     poses.forEach((pose, row) => {
       pose.premultiply(shift).decompose(translation, rotation, scale);
-      numbers.set([...translation.toArray(), ...rotation.toArray()], row * 7);
+      poseNumbers.set([...translation.toArray(), ...rotation.toArray()], row * 7);
     });
-    return { revision: this.table.revision, stamp: 0, poses: numbers, ages: new Float32Array(poses.length) };
+    return { revision: this.table.revision, stamp: 0, poses: poseNumbers, ages: new Float32Array(poses.length) };
   }
 
   /** Returns the position of a joint, also of one that mimics another. */
@@ -95,11 +95,11 @@ export class MovingRobot {
 
 /** Returns the frames that a robot's joints move, each with its joint, its parent frame and the leading joint. */
 function findDrivenFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; parentFrame: string | undefined; leader: string }][] {
-  const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
+  const frameByLink = new Map(robot.links.map(({ name, frame }) => [name, frame]));
   return robot.joints.flatMap((joint) => {
-    const [frame, leader] = [frameOf.get(joint.child), joints[joint.name]];
+    const [frame, leader] = [frameByLink.get(joint.child), joints[joint.name]];
     if (frame === undefined || leader === undefined || joint.kind === "floating") return [];
-    return [[frame, { joint, parentFrame: frameOf.get(joint.parent), leader }]];
+    return [[frame, { joint, parentFrame: frameByLink.get(joint.parent), leader }]];
   });
 }
 

@@ -4,10 +4,10 @@ import { unpackTransforms } from "../connection/transforms";
 import { MovingRobot } from "./moving-robot";
 import { decodeBase64, type Recording } from "./recording";
 
-const GRID = "rviz_default_plugins/Grid";
-const TF = "rviz_default_plugins/TF";
+const GRID_CLASS = "rviz_default_plugins/Grid";
+const TF_CLASS = "rviz_default_plugins/TF";
 /** Length of TF's axes at Marker Scale 1, m. */
-const AXIS_LENGTH = 0.2;
+const AXIS_LENGTH_M = 0.2;
 
 /** Replaces the server in an exported page: emits the recorded messages, and moves the robot's joints. */
 export class RecordedConnection extends Connection {
@@ -27,7 +27,7 @@ export class RecordedConnection extends Connection {
       this.message.emit(message);
       if (message.type === "joints") this.controls = message.controls ?? [];
       if (message.type === "joint_positions") this.positions = { ...message.positions };
-      if (message.type === "frame_table") this.prepare(message);
+      if (message.type === "frame_table") this.createRobot(message);
     }
     this.startPositions = { ...this.positions };
     for (const frame of frames) this.receiveBytes(decodeBase64(frame).buffer);
@@ -57,17 +57,18 @@ export class RecordedConnection extends Connection {
   private fitSizes({ diagonal, ground }: RobotMeasured): void {
     const { messages, awaits_size, spacing } = this.recording;
     const displays = messages.find((message) => message.type === "tree")?.displays ?? [];
-    const findProperty = (drawing: string, name: string): Property | undefined => displays.find((display) => display.drawing === drawing)?.properties.find((property) => property.name === name);
+    const findProperty = (drawing: string, name: string): Property | undefined =>
+      displays.find((display) => display.drawing === drawing)?.properties.find((property) => property.name === name);
     const setValue = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
-    const height = findProperty(GRID, "Offset")?.children.find(({ name }) => name === "Z");
+    const height = findProperty(GRID_CLASS, "Offset")?.children.find(({ name }) => name === "Z");
     if (height?.value === 0 && ground !== 0) setValue(height, ground);
     if (!awaits_size || diagonal <= 0) return;
-    const [cell, scale] = [findProperty(GRID, "Cell Size"), findProperty(TF, "Marker Scale")];
-    if (cell) setValue(cell, chooseCellSize(diagonal));
-    if (scale) setValue(scale, chooseMarkerScale(diagonal, spacing ?? diagonal));
+    const [cellSize, markerScale] = [findProperty(GRID_CLASS, "Cell Size"), findProperty(TF_CLASS, "Marker Scale")];
+    if (cellSize) setValue(cellSize, chooseCellSize(diagonal));
+    if (markerScale) setValue(markerScale, chooseMarkerScale(diagonal, spacing ?? diagonal));
   }
 
-  private prepare(table: FrameTable): void {
+  private createRobot(table: FrameTable): void {
     const { messages, frames, display } = this.recording;
     const robot = messages.find((message) => message.type === "robot_scene" && message.display === display);
     const transforms = frames.map((frame) => unpackTransforms(decodeBase64(frame).buffer)).find((transforms) => transforms !== null);
@@ -105,8 +106,8 @@ function chooseCellSize(diagonal: number): number {
 
 /** Returns TF's Marker Scale with which axes and links can be distinguished: `ModelSize.marker_scale` of the server. */
 function chooseMarkerScale(diagonal: number, spacing: number): number {
-  const axis = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
-  return Number((axis / AXIS_LENGTH).toPrecision(2));
+  const axisLength = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
+  return Number((axisLength / AXIS_LENGTH_M).toPrecision(2));
 }
 
 function drawRandomPosition({ lower, upper }: JointControl): number {

@@ -1,7 +1,7 @@
 import type { MeshFiles } from "../scene/meshes/mesh-files";
 import { decodeBase64 } from "./recording";
 
-const TYPES: Readonly<Record<string, string>> = {
+const IMAGE_TYPES: Readonly<Record<string, string>> = {
   png: "image/png",
   jpg: "image/jpeg",
   jpeg: "image/jpeg",
@@ -12,33 +12,33 @@ const TYPES: Readonly<Record<string, string>> = {
 
 /** The meshes and textures that are embedded in the page. */
 export class RecordedFiles implements MeshFiles {
-  private readonly blobs = new Map<string, string>();
+  private readonly blobUrls = new Map<string, string>();
 
   constructor(private readonly files: Readonly<Record<string, string>>) {}
 
   fetch(url: string): Promise<Response> {
-    const path = pathOf(url);
+    const path = meshPathOf(url);
     const file = this.files[path];
     if (file === undefined) return Promise.resolve(new Response("no such file", { status: 404 }));
     return Promise.resolve(new Response(decodeBase64(file), { headers: { ETag: path } }));
   }
 
   addressOf(url: string): string {
-    const path = pathOf(url);
+    const path = meshPathOf(url);
     const file = this.files[path];
     if (file === undefined) return url;
-    let blob = this.blobs.get(path);
-    if (blob === undefined) {
-      const type = TYPES[path.slice(path.lastIndexOf(".") + 1).toLowerCase()] ?? "application/octet-stream";
-      blob = URL.createObjectURL(new Blob([decodeBase64(file)], { type }));
-      this.blobs.set(path, blob);
+    let blobUrl = this.blobUrls.get(path);
+    if (blobUrl === undefined) {
+      const type = IMAGE_TYPES[path.slice(path.lastIndexOf(".") + 1).toLowerCase()] ?? "application/octet-stream";
+      blobUrl = URL.createObjectURL(new Blob([decodeBase64(file)], { type }));
+      this.blobUrls.set(path, blobUrl);
     }
-    return blob;
+    return blobUrl;
   }
 }
 
 /** Returns the `/mesh/...` part of an address, which does not depend on where the page was opened. */
-function pathOf(url: string): string {
+function meshPathOf(url: string): string {
   const [path = ""] = url.split("?");
   const index = path.indexOf("/mesh/");
   return index < 0 ? path : path.slice(index);

@@ -2,7 +2,7 @@ import type { ServerMessage } from "../protocol";
 
 /** The server's messages at the time of the export, as `panels/export/html.py` writes them. */
 export interface Recording {
-  /** Name and version of the program. */
+  /** The name and version of the program. */
   program: string;
   /** The RobotModel display whose joints can be moved. */
   display: string;

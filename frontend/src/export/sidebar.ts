@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import { ComparisonPanel } from "../panels/description/comparison-panel";
 import { createJointBar } from "../panels/joints/joint-bar";
 import { JointRow } from "../panels/joints/joint-row";
@@ -34,18 +34,18 @@ export class Sidebar {
   ) {
     const texts = strings.sharing.exported;
     const name = session.robots.get(display)?.name ?? "";
-    const languageButton = button(
+    const languageButton = createButton(
       strings.shell.languageHint,
       changeLanguage,
       "tool",
-      icon("language"),
+      createIcon("language"),
       strings.shell.language,
     );
-    const themeButton = button(
+    const themeButton = createButton(
       strings.shell.theme,
       () => theme.choose(theme.theme === "light" ? "dark" : "light"),
       "tool bare",
-      icon("light"),
+      createIcon("light"),
     );
     this.element = h(
       "aside",
@@ -92,13 +92,13 @@ export class Sidebar {
 
   private createViews(): HTMLElement[] {
     const texts = strings.sharing.exported;
-    const sides = SIDES.map((side) => button(texts.sides[side], () => this.actions.lookFrom(side), "tool", texts.sides[side]));
-    const recall = ({ cls, values }: View): void => {
+    const sides = SIDES.map((side) => createButton(texts.sides[side], () => this.actions.lookFrom(side), "tool", texts.sides[side]));
+    const applyView = ({ cls, values }: View): void => {
       this.session.view.setClass(cls);
       this.session.view.update(values);
     };
-    const savedViewButtons = this.session.view.savedViews.map(({ view }) => button(view.name, () => recall(view), "tool", view.name));
-    const resetButton = button(texts.startHint, () => this.actions.reset(), "tool", icon("reset"), texts.start);
+    const savedViewButtons = this.session.view.savedViews.map(({ view }) => createButton(view.name, () => applyView(view), "tool", view.name));
+    const resetButton = createButton(texts.startHint, () => this.actions.reset(), "tool", createIcon("reset"), texts.start);
     return [...sides, ...savedViewButtons, resetButton];
   }
 
@@ -114,9 +114,9 @@ export class Sidebar {
     joints.positionsChanged.on(update);
     angleUnits.changed.on(() => rows.forEach((row) => row.showUnit()));
     update();
-    const bar = createJointBar(this.session);
+    const toolbar = createJointBar(this.session);
     const emptyHint = h("p", { class: "empty" }, texts.none);
-    const content = rows.length > 0 ? [bar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [emptyHint];
+    const content = rows.length > 0 ? [toolbar, h("div", { class: "joints" }, ...rows.map((row) => row.element))] : [emptyHint];
     return h("section", { class: "joint-section", aria: { label: strings.sharing.exported.joints } }, h("h2", {}, strings.sharing.exported.joints), ...content);
   }
 }

@@ -3,7 +3,7 @@ import { MODELING_PATHS } from "./modeling";
 import { SHELL_PATHS } from "./shell";
 
 /** Our own icons, 16 x 16, drawn with lines in the current text color. */
-const PATHS = {
+const ICON_PATHS = {
   ...DISPLAY_ICON_PATHS,
   ...SHELL_PATHS,
   ...MODELING_PATHS,
@@ -77,17 +77,17 @@ const PATHS = {
   hand: "M4.5 9V5a1 1 0 012 0V3a1 1 0 012 0v-.3a1 1 0 012 0V4a1 1 0 012 0v5.5c0 2.6-1.7 4.5-4.2 4.5-2 0-3-.8-4-2.6L2.6 8.6a1 1 0 011.7-1z",
 } as const;
 
-export type IconName = keyof typeof PATHS;
+export type IconName = keyof typeof ICON_PATHS;
 
-const SVG = "http://www.w3.org/2000/svg";
+const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
 
-export function icon(name: IconName, className = ""): SVGSVGElement {
-  const svg = document.createElementNS(SVG, "svg");
+export function createIcon(name: IconName, className = ""): SVGSVGElement {
+  const svg = document.createElementNS(SVG_NAMESPACE, "svg");
   svg.setAttribute("viewBox", "0 0 16 16");
   svg.setAttribute("class", `icon ${className}`.trim());
   svg.setAttribute("aria-hidden", "true");
-  const path = document.createElementNS(SVG, "path");
-  path.setAttribute("d", PATHS[name]);
+  const path = document.createElementNS(SVG_NAMESPACE, "path");
+  path.setAttribute("d", ICON_PATHS[name]);
   svg.append(path);
   return svg;
 }

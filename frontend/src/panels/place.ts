@@ -1,5 +1,5 @@
 /** Returns the name of a file without its folders. */
-export function nameOf(path: string): string {
+export function fileNameOf(path: string): string {
   return path.slice(Math.max(path.lastIndexOf("/"), path.lastIndexOf("\\")) + 1);
 }
 

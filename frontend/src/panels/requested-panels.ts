@@ -15,8 +15,8 @@ export interface PanelOpener {
 
 /** Opens the panels that programs such as rqt_plot request, each once in a run of the program. */
 export class RequestedPanels {
-  private run = "";
-  private readonly opened = new Set<number>();
+  private lastRun = "";
+  private readonly openedNumbers = new Set<number>();
   private readonly plots = new Map<number, Plot>();
 
   constructor(
@@ -25,25 +25,25 @@ export class RequestedPanels {
     private readonly opener: PanelOpener,
   ) {
     connection.on("hello", ({ run }) => {
-      if (run === this.run) return;
-      this.run = run;
-      this.opened.clear();
+      if (run === this.lastRun) return;
+      this.lastRun = run;
+      this.openedNumbers.clear();
       this.plots.clear();
     });
     connection.on("requested_panels", ({ panels }) => panels.forEach((panel) => this.apply(panel)));
   }
 
   private apply(panel: RequestedPanel): void {
-    if (!this.opened.has(panel.number)) {
-      this.opened.add(panel.number);
+    if (!this.openedNumbers.has(panel.number)) {
+      this.openedNumbers.add(panel.number);
       this.open(panel);
     }
-    this.plot(panel);
+    this.addSeries(panel);
   }
 
   private open({ panel, display, node, velocities }: RequestedPanel): void {
     const { parameters, teleop } = this.monitor;
-    if (node !== null) parameters.choose(node);
+    if (node !== null) parameters.chooseNode(node);
     if (velocities) {
       const { topic, stamped, linear, angular } = velocities;
       teleop.configure({
@@ -62,13 +62,13 @@ export class RequestedPanels {
   }
 
   /** Adds the requested series to the plot of the panel, which may be one of the last visit. */
-  private plot({ number, series }: RequestedPanel): void {
+  private addSeries({ number, series }: RequestedPanel): void {
     if (series.length === 0) return;
     const { plots } = this.monitor;
-    const known = this.plots.get(number);
+    const knownPlot = this.plots.get(number);
     const plot =
-      (known && plots.plots.includes(known) ? known : undefined) ??
-      plots.plots.find((candidate) => isPart(candidate, series)) ??
+      (knownPlot && plots.plots.includes(knownPlot) ? knownPlot : undefined) ??
+      plots.plots.find((candidate) => hasOnlyRequestedSeries(candidate, series)) ??
       plots.plots.find((candidate) => candidate.series.length === 0) ??
       plots.addPlot();
     this.plots.set(number, plot);
@@ -77,7 +77,7 @@ export class RequestedPanels {
 }
 
 /** Returns whether a plot has series, all of which are requested. */
-function isPart(plot: Plot, requested: RequestedPanel["series"]): boolean {
+function hasOnlyRequestedSeries(plot: Plot, requested: RequestedPanel["series"]): boolean {
   const isRequested = (name: { topic: string; path: string }): boolean =>
     requested.some(({ topic, path }) => topic === name.topic && path === name.path);
   return plot.series.length > 0 && plot.series.every(isRequested);

@@ -11,7 +11,7 @@ const MAX_DARKNESS = 0.62;
  * The heights above the ground, in sizes of the robot, over which the shade of a surface decreases by a factor of e:
  * near the ground, and far from it.
  */
-const [NEAR, FAR] = [0.05, 0.35];
+const [NEAR_DECAY, FAR_DECAY] = [0.05, 0.35];
 /** The weight of the shade from far surfaces. */
 const FAR_WEIGHT = 0.35;
 /** The radius of the blur in texels, and the number of its passes. */
@@ -32,7 +32,7 @@ export class ContactShadow {
   private readonly pixels = new Uint8Array(4 * TEXELS_PER_SIDE * TEXELS_PER_SIDE);
   private readonly texture = new DataTexture(this.pixels, TEXELS_PER_SIDE, TEXELS_PER_SIDE);
   private shade = new Float32Array(TEXELS_PER_SIDE * TEXELS_PER_SIDE);
-  private spare = new Float32Array(TEXELS_PER_SIDE * TEXELS_PER_SIDE);
+  private blurBuffer = new Float32Array(TEXELS_PER_SIDE * TEXELS_PER_SIDE);
   private lastKey = NaN;
 
   constructor() {
@@ -60,36 +60,36 @@ export class ContactShadow {
     this.ground.position.set(center.x, center.y, height);
     this.ground.scale.setScalar(width);
     this.shade.fill(0);
-    for (const mesh of meshes) this.add(mesh, center, width, height, size.length());
+    for (const mesh of meshes) this.addMesh(mesh, center, width, height, size.length());
     for (let i = 0; i < BLUR_PASSES; i++) this.blur();
     this.shade.forEach((shade, i) => (this.pixels[4 * i + 3] = 255 * MAX_DARKNESS * (1 - Math.exp(-shade))));
     this.texture.needsUpdate = true;
   }
 
-  private add({ geometry, matrixWorld }: Mesh, center: Vector3, width: number, height: number, size: number): void {
+  private addMesh({ geometry, matrixWorld }: Mesh, center: Vector3, width: number, height: number, size: number): void {
     const { points, area } = getSamples(geometry);
-    const growth = Math.cbrt(Math.abs(matrixWorld.determinant())) ** 2;
-    const texels = (area * growth) / (width / TEXELS_PER_SIDE) ** 2;
+    const areaScale = Math.cbrt(Math.abs(matrixWorld.determinant())) ** 2;
+    const texelCount = (area * areaScale) / (width / TEXELS_PER_SIDE) ** 2;
     for (let i = 0; i < points.length; i += 3) {
       position.fromArray(points, i).applyMatrix4(matrixWorld);
       const heightAbove = Math.max(0, position.z - height) / size;
       const x = Math.floor(((position.x - center.x) / width + 0.5) * TEXELS_PER_SIDE);
       const y = Math.floor(((position.y - center.y) / width + 0.5) * TEXELS_PER_SIDE);
       const texel = y * TEXELS_PER_SIDE + x;
-      this.shade[texel] = (this.shade[texel] ?? 0) + texels * (Math.exp(-heightAbove / NEAR) + FAR_WEIGHT * Math.exp(-heightAbove / FAR));
+      this.shade[texel] = (this.shade[texel] ?? 0) + texelCount * (Math.exp(-heightAbove / NEAR_DECAY) + FAR_WEIGHT * Math.exp(-heightAbove / FAR_DECAY));
     }
   }
 
   /** Replaces each texel by the mean of a square around it. */
   private blur(): void {
     for (const step of [1, TEXELS_PER_SIDE]) {
-      const [source, target] = [this.shade, this.spare];
+      const [source, target] = [this.shade, this.blurBuffer];
       for (let i = 0; i < source.length; i++) {
         let sum = 0;
         for (let k = -BLUR_RADIUS; k <= BLUR_RADIUS; k++) sum += source[i + k * step] ?? 0;
         target[i] = sum / (2 * BLUR_RADIUS + 1);
       }
-      [this.shade, this.spare] = [target, source];
+      [this.shade, this.blurBuffer] = [target, source];
     }
   }
 }

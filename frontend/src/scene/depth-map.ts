@@ -4,7 +4,7 @@ import type { Viewport } from "./viewport";
 
 /** A surface hides a point if it is nearer by more than this share of the point's distance. */
 const TOLERANCE = 0.01;
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   uniform sampler2D depths;
   varying vec2 vUv;
   void main() {
@@ -32,7 +32,7 @@ export class DepthMap {
     const quad = new ScreenQuad(
       new ShaderMaterial({
         vertexShader: SCREEN_VERTEX,
-        fragmentShader: FRAGMENT,
+        fragmentShader: FRAGMENT_SHADER,
         uniforms: { depths: { value: target.depthTexture } },
         depthTest: false,
         depthWrite: false,
@@ -67,8 +67,8 @@ export class DepthMap {
   /** Returns the distance from the camera to the nearest surface at a pixel, m along the viewing axis. */
   private readDistance(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
-    const first = (row * this.size.x + column) * 4;
-    const [a = 0, b = 0, c = 0, d = 0] = this.pixels.subarray(first, first + 4);
+    const firstByte = (row * this.size.x + column) * 4;
+    const [a = 0, b = 0, c = 0, d = 0] = this.pixels.subarray(firstByte, firstByte + 4);
     return this.toDistance(2 * ((a + b / 255 + c / 65025 + d / 16581375) / 255) - 1);
   }
 

@@ -12,7 +12,7 @@ const SHOULDER = 0.532;
 /** The rate of that approach, chosen so that the curve is smooth at the shoulder. */
 const ROLL_OFF = 1 / (1 - SHOULDER);
 
-const TONE = /* glsl */ `
+const TONE_SHADER = /* glsl */ `
   {
     vec3 light = pow(max(gl_FragColor.rgb, 0.0), vec3(${GAMMA.toFixed(2)}));
     vec3 toe = ${TOE.toFixed(3)} * pow(light / ${TOE.toFixed(3)}, vec3(${TOE_POWER.toFixed(3)}));
@@ -28,7 +28,7 @@ const TONE = /* glsl */ `
  */
 export function applyFilmicTone<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace("#include <tonemapping_fragment>", TONE);
+    shader.fragmentShader = shader.fragmentShader.replace("#include <tonemapping_fragment>", TONE_SHADER);
   };
   material.customProgramCacheKey = () => "filmic";
   return material;

@@ -21,17 +21,17 @@ const STILL_AFTER_MS = 250;
  */
 export interface Detail {
   /** Whether the frame is part of a motion that the machine draws slowly, so that details may be omitted. */
-  readonly moving: boolean;
-  readonly smooth: boolean;
-  readonly share: number;
+  readonly isMoving: boolean;
+  readonly isAntialiased: boolean;
+  readonly resolutionShare: number;
 }
 
-export const FINEST: Detail = { moving: false, smooth: true, share: 1 };
+export const FINEST_DETAIL: Detail = { isMoving: false, isAntialiased: true, resolutionShare: 1 };
 const DETAILS: readonly Detail[] = [
-  FINEST,
-  { moving: true, smooth: false, share: 1 },
-  { moving: true, smooth: false, share: 0.7 },
-  { moving: true, smooth: false, share: 0.5 },
+  FINEST_DETAIL,
+  { isMoving: true, isAntialiased: false, resolutionShare: 1 },
+  { isMoving: true, isAntialiased: false, resolutionShare: 0.7 },
+  { isMoving: true, isAntialiased: false, resolutionShare: 0.5 },
 ];
 
 /**
@@ -49,19 +49,19 @@ export class FrameLoop {
   readonly judged = new Signal<boolean>();
   /** Maximum number of frames per second. */
   rate = 30;
-  private requestedAt: number | null = null;
-  private readonly scheduled = new Set<() => void>();
+  private requestedMs: number | null = null;
+  private readonly scheduledUpdates = new Set<() => void>();
   private isTickRequested = false;
   /** The earliest time of the next frame. */
   private dueMs = -Infinity;
-  private lateness = 0;
+  private lateScore = 0;
   private timelyCount = 0;
   private requiredTimelyCount = TIMELY_FRAME_COUNT;
   /** The index in `DETAILS` for moving frames. */
   private detailLevel = 0;
-  private wasLastFine = false;
+  private wasLastFrameFine = false;
   private stillTimer = 0;
-  private drawnAt = -Infinity;
+  private lastDrawnMs = -Infinity;
   private recentTimes: number[] = [];
   private frameCount = 0;
 
@@ -76,7 +76,7 @@ export class FrameLoop {
 
   /** Whether nothing has changed since the last frame, in the scene or outside it, and that frame was a fine one. */
   get isSettled(): boolean {
-    return this.requestedAt === null && this.scheduled.size === 0 && this.wasLastFine;
+    return this.requestedMs === null && this.scheduledUpdates.size === 0 && this.wasLastFrameFine;
   }
 
   /** Draws moving frames coarsely from the first one on, because the renderer is known to be slow. */
@@ -89,15 +89,15 @@ export class FrameLoop {
   }
 
   /** Returns the number of frames in the last second; null while the scene is idle. */
-  framesPerSecond(nowMs: number): number | null {
+  computeFrameRate(nowMs: number): number | null {
     this.recentTimes = this.recentTimes.filter((timeMs) => nowMs - timeMs < 1000);
-    return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recentTimes.length;
+    return nowMs - this.lastDrawnMs > IDLE_AFTER_MS ? null : this.recentTimes.length;
   }
 
   /** Starts drawing, now that there is something to draw. */
   release(): void {
     this.isHeld = false;
-    if (this.requestedAt !== null) this.requestTick();
+    if (this.requestedMs !== null) this.requestTick();
   }
 
   /** Redraws immediately after the canvas was resized, which clears it: it would flicker until the next frame. */
@@ -107,14 +107,14 @@ export class FrameLoop {
 
   /** Requests a frame because something changed. */
   invalidate(): void {
-    if (this.requestedAt !== null) return;
-    this.requestedAt = performance.now();
+    if (this.requestedMs !== null) return;
+    this.requestedMs = performance.now();
     this.requestTick();
   }
 
   /** Updates something outside the scene when the next frame is due; the scene is not drawn for it. */
   schedule(show: () => void): void {
-    this.scheduled.add(show);
+    this.scheduledUpdates.add(show);
     this.requestTick();
   }
 
@@ -125,55 +125,55 @@ export class FrameLoop {
   }
 
   private readonly tick = (): void => {
-    const now = performance.now();
-    const interval = 1000 / Math.max(1, this.rate);
-    const due = this.dueMs;
+    const nowMs = performance.now();
+    const intervalMs = 1000 / Math.max(1, this.rate);
+    const dueMs = this.dueMs;
     this.isTickRequested = false;
-    if (now < due - TOLERANCE_MS) {
+    if (nowMs < dueMs - TOLERANCE_MS) {
       this.requestTick();
       return;
     }
     // A late frame must not delay the frames after it, or each late frame would cost one.
-    this.dueMs = Math.max(due, now - interval) + interval;
-    const besides = [...this.scheduled];
-    this.scheduled.clear();
-    for (const show of besides) show();
-    if (this.requestedAt === null || this.isHeld) return;
-    if (this.frameCount >= FIRST_FRAME_COUNT) this.judge(now - Math.max(this.requestedAt, due));
-    this.requestedAt = null;
+    this.dueMs = Math.max(dueMs, nowMs - intervalMs) + intervalMs;
+    const dueUpdates = [...this.scheduledUpdates];
+    this.scheduledUpdates.clear();
+    for (const show of dueUpdates) show();
+    if (this.requestedMs === null || this.isHeld) return;
+    if (this.frameCount >= FIRST_FRAME_COUNT) this.judge(nowMs - Math.max(this.requestedMs, dueMs));
+    this.requestedMs = null;
     // The first frame must appear quickly.
     const level = Math.max(this.detailLevel, this.frameCount > 0 ? 0 : 1);
-    this.paint(now, level);
+    this.paint(nowMs, level);
     clearTimeout(this.stillTimer);
     if (level > 0) this.stillTimer = window.setTimeout(() => this.paintStill(), STILL_AFTER_MS);
   };
 
-  private judge(delay: number): void {
-    const isLate = delay > LATE_MS;
+  private judge(delayMs: number): void {
+    const isLate = delayMs > LATE_MS;
     this.judged.emit(isLate);
-    this.lateness = Math.max(0, this.lateness + (isLate ? 1 : -1));
+    this.lateScore = Math.max(0, this.lateScore + (isLate ? 1 : -1));
     this.timelyCount = isLate ? 0 : this.timelyCount + 1;
-    if (this.lateness >= LATE_FRAME_COUNT) this.changeLevel(1);
+    if (this.lateScore >= LATE_FRAME_COUNT) this.changeLevel(1);
     else if (this.timelyCount >= this.requiredTimelyCount && this.detailLevel > 0) {
       this.requiredTimelyCount *= 2;
       this.changeLevel(-1);
     }
   }
 
-  private changeLevel(coarser: number): void {
-    this.detailLevel = Math.min(this.detailLevel + coarser, DETAILS.length - 1);
-    this.lateness = this.timelyCount = 0;
+  private changeLevel(step: number): void {
+    this.detailLevel = Math.min(this.detailLevel + step, DETAILS.length - 1);
+    this.lateScore = this.timelyCount = 0;
   }
 
   private paintStill(): void {
-    if (this.requestedAt === null) this.paint(performance.now(), 0);
+    if (this.requestedMs === null) this.paint(performance.now(), 0);
   }
 
-  private paint(now: number, level: number): void {
-    this.drawnAt = now;
-    this.recentTimes.push(now);
-    this.draw(DETAILS[level] ?? FINEST);
-    this.wasLastFine = level === 0;
+  private paint(nowMs: number, level: number): void {
+    this.lastDrawnMs = nowMs;
+    this.recentTimes.push(nowMs);
+    this.draw(DETAILS[level] ?? FINEST_DETAIL);
+    this.wasLastFrameFine = level === 0;
     this.frameCount += 1;
     this.drawn.emit();
   }

@@ -5,14 +5,14 @@ import type { Bounds, Vector } from "../state/views/vector";
 import { orbitFrom } from "../state/views/orbit";
 import { computeViewAround, computeOverview } from "../state/views/surroundings";
 import type { ViewValues } from "../state/views/view-controller";
-import { PICKABLE } from "./layers";
+import { PICKABLE_LAYER } from "./layers";
 
 /** What the camera was placed to show without a user: a world without robots, or its robots. */
-const SHOWS_WORLD = "world";
-const SHOWS_ROBOTS = "robots";
+const WORLD_CONTENT = "world";
+const ROBOTS_CONTENT = "robots";
 /** The distance of the focal point, m, if the camera of a world's file looks at nothing, and its minimum. */
-const DEFAULT_FOCAL_DISTANCE = 5;
-const MIN_FOCAL_DISTANCE = 0.5;
+const DEFAULT_FOCAL_DISTANCE_M = 5;
+const MIN_FOCAL_DISTANCE_M = 0.5;
 
 /** The part of a world that the initial view needs. */
 export interface InitialViewWorld {
@@ -28,37 +28,37 @@ export interface InitialViewWorld {
  * surroundings; or, while there are no robots or they have fallen out of the world, where the whole world is visible.
  */
 export function setInitialView(world: InitialViewWorld, view: ViewState, size: ViewSize): void {
-  if (!view.awaitsFit(world.hasRobots ? SHOWS_ROBOTS : SHOWS_WORLD)) return;
+  if (!view.awaitsFit(world.hasRobots ? ROBOTS_CONTENT : WORLD_CONTENT)) return;
   const camera = world.readCameraOfFile();
   if (camera) {
-    view.proposeValues(orbitValuesOf(world, camera), SHOWS_ROBOTS, true);
+    view.proposeValues(computeOrbitValues(world, camera), ROBOTS_CONTENT, true);
     return;
   }
   const boundsByKind = world.computeBoundsByKind();
   const [robots, worldBounds] = [boundsOf(boundsByKind.robots), boundsOf(boundsByKind.world)];
-  if (robots) view.proposeValues(computeViewAround(view.values, robots, size, (eye, position) => canSee(world, eye, position)), SHOWS_ROBOTS, true);
-  else view.proposeValues(worldBounds ? computeOverview(view.values, worldBounds, size) : {}, SHOWS_WORLD, world.hasRobots);
+  if (robots) view.proposeValues(computeViewAround(view.values, robots, size, (viewpoint, position) => canSee(world, viewpoint, position)), ROBOTS_CONTENT, true);
+  else view.proposeValues(worldBounds ? computeOverview(view.values, worldBounds, size) : {}, WORLD_CONTENT, world.hasRobots);
 }
 
 /** Returns the values of an Orbit view that looks like a camera of the world's file, without its roll. */
-function orbitValuesOf(world: InitialViewWorld, camera: Matrix4): ViewValues {
-  const eye = new Vector3().setFromMatrixPosition(camera);
+function computeOrbitValues(world: InitialViewWorld, camera: Matrix4): ViewValues {
+  const viewpoint = new Vector3().setFromMatrixPosition(camera);
   const direction = new Vector3(1, 0, 0).transformDirection(camera);
-  const hit = world.pick(rayFrom(eye, direction))?.distance ?? (direction.z < 0 && eye.z > 0 ? -eye.z / direction.z : DEFAULT_FOCAL_DISTANCE);
-  const focal = eye.clone().addScaledVector(direction, Math.max(hit, MIN_FOCAL_DISTANCE));
-  return orbitFrom(focal.toArray(), eye.toArray());
+  const focalDistance = world.pick(createRay(viewpoint, direction))?.distance ?? (direction.z < 0 && viewpoint.z > 0 ? -viewpoint.z / direction.z : DEFAULT_FOCAL_DISTANCE_M);
+  const focal = viewpoint.clone().addScaledVector(direction, Math.max(focalDistance, MIN_FOCAL_DISTANCE_M));
+  return orbitFrom(focal.toArray(), viewpoint.toArray());
 }
 
-/** Whether nothing except robots is between a camera and a place. */
-function canSee(world: InitialViewWorld, eye: Vector, position: Vector): boolean {
-  const start = new Vector3(...eye);
+/** Whether nothing except robots is between a camera and a position. */
+function canSee(world: InitialViewWorld, viewpoint: Vector, position: Vector): boolean {
+  const start = new Vector3(...viewpoint);
   const direction = new Vector3(...position).sub(start);
-  return world.isClear(rayFrom(start, direction.clone().normalize(), direction.length()));
+  return world.isClear(createRay(start, direction.clone().normalize(), direction.length()));
 }
 
-function rayFrom(eye: Vector3, direction: Vector3, maxDistance = Infinity): Raycaster {
-  const ray = new Raycaster(eye, direction, 0, maxDistance);
-  ray.layers.enable(PICKABLE);
+function createRay(viewpoint: Vector3, direction: Vector3, maxDistance = Infinity): Raycaster {
+  const ray = new Raycaster(viewpoint, direction, 0, maxDistance);
+  ray.layers.enable(PICKABLE_LAYER);
   return ray;
 }
 

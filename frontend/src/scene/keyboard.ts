@@ -5,7 +5,7 @@ import { TOOLS } from "./tools/catalog";
 import type { Toolbox } from "./tools/toolbox";
 
 /** Selects the elements in which a letter is text, or chooses an entry. */
-export const TAKES_LETTERS = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
+export const LETTER_INPUT_SELECTOR = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
 
 /** RViz's keys for tools and views, which work wherever no text is typed. */
 export class Keyboard {
@@ -17,15 +17,15 @@ export class Keyboard {
   ) {
     document.addEventListener("keydown", (event) => {
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
-      if (event.target instanceof Element && event.target.closest(TAKES_LETTERS)) return;
-      if (this.runKey(event.key.length === 1 ? event.key.toLowerCase() : event.key, event.shiftKey)) event.preventDefault();
+      if (event.target instanceof Element && event.target.closest(LETTER_INPUT_SELECTOR)) return;
+      if (this.handleKey(event.key.length === 1 ? event.key.toLowerCase() : event.key, event.shiftKey)) event.preventDefault();
     });
   }
 
-  private runKey(key: string, isShiftDown: boolean): boolean {
+  private handleKey(key: string, isShiftDown: boolean): boolean {
     const { session, toolbox } = this;
     const { tools } = session;
-    if (key === "Escape") return this.escape();
+    if (key === "Escape") return this.handleEscape();
     const tool = tools.tools.find((candidate) => candidate.isSupported && TOOLS.get(candidate.cls)?.key === key);
     if (tool && (tool === tools.current || toolbox.current.grabsKeys !== true)) {
       tools.toggle(tool);
@@ -50,9 +50,9 @@ export class Keyboard {
   }
 
   /** Activates the default tool; if it is active already, clears the selection. */
-  private escape(): boolean {
+  private handleEscape(): boolean {
     const { tools, selection } = this.session;
-    if (tools.current !== tools.default) tools.choose(tools.default);
+    if (tools.current !== tools.default) tools.activate(tools.default);
     else selection.select(null);
     return true;
   }

@@ -1,8 +1,8 @@
 /** Layers of three.js. Objects are in layer 0 by default, which cameras render. */
 
 /** Outlined because the object is selected. */
-export const SELECTED = 1;
-/** Highlighted for a moment. */
-export const FLASHING = 2;
+export const SELECTED_LAYER = 1;
+/** Highlighted briefly. */
+export const FLASHING_LAYER = 2;
 /** Tested by rays, but drawn as part of a batch. */
-export const PICKABLE = 3;
+export const PICKABLE_LAYER = 3;

@@ -1,5 +1,5 @@
 /** The share of a surface's color that is visible even where the camera's light does not reach. */
-export const AMBIENT = 0.2;
+export const AMBIENT_SHARE = 0.2;
 
 /** The lighting: RViz's light at the camera, a soft one at the camera, a studio, or the lights of a world. */
 export type Lighting = "Camera" | "Soft" | "Studio" | "World";
@@ -10,24 +10,24 @@ export function usesSceneLights(lighting: Lighting): boolean {
 }
 
 /**
- * GLSL functions for light that moves with the camera. `byCamera` is RViz's light, which shows a surface facing the
- * camera in exactly its color. `softly` is a lamp above the viewer's left shoulder, a sky, and the sky's reflection,
- * which reveals the shape of black surfaces. `normal` is in the camera's frame, so that neither lights nor shadows have
- * to be computed; on a software renderer this is as fast as RViz's light.
+ * GLSL functions for light that moves with the camera. `applyCameraLight` is RViz's light, which shows a surface facing
+ * the camera in exactly its color. `applySoftLight` is a lamp above the viewer's left shoulder, a sky, and the sky's
+ * reflection, which reveals the shape of black surfaces. `normal` is in the camera's frame, so that neither lights nor
+ * shadows have to be computed; on a software renderer this is as fast as RViz's light.
  */
 export const SURFACE_LIGHT = /* glsl */ `
-  vec3 byCamera(vec3 color, float facing) {
-    return color * (${AMBIENT.toFixed(2)} + ${(1 - AMBIENT).toFixed(2)} * max(0.0, facing));
+  vec3 applyCameraLight(vec3 color, float facingCosine) {
+    return color * (${AMBIENT_SHARE.toFixed(2)} + ${(1 - AMBIENT_SHARE).toFixed(2)} * max(0.0, facingCosine));
   }
-  vec3 reflected(vec3 color, vec3 normal) {
-    float away = 1.0 - max(0.0, normal.z);
+  vec3 addSkyReflection(vec3 color, vec3 normal) {
+    float grazing = 1.0 - max(0.0, normal.z);
     float sky = smoothstep(-0.6, 1.0, 2.0 * normal.z * (normal.y - 0.3 * normal.x));
-    float gleam = max(0.0, dot(normal, vec3(-0.19, 0.28, 0.94)));
-    float share = (0.2 + 0.4 * away * away * away) * (0.35 + 0.65 * sky) + 0.13 * pow(gleam, 9.0);
-    return color + share * (1.0 - min(color, vec3(1.0)));
+    float highlight = max(0.0, dot(normal, vec3(-0.19, 0.28, 0.94)));
+    float reflectance = (0.2 + 0.4 * grazing * grazing * grazing) * (0.35 + 0.65 * sky) + 0.13 * pow(highlight, 9.0);
+    return color + reflectance * (1.0 - min(color, vec3(1.0)));
   }
-  vec3 softly(vec3 color, vec3 normal) {
+  vec3 applySoftLight(vec3 color, vec3 normal) {
     float lamp = max(0.0, dot(normal, vec3(-0.36, 0.52, 0.775)));
-    return reflected(color * (0.32 + 0.16 * normal.y + 0.58 * lamp), normal);
+    return addSkyReflection(color * (0.32 + 0.16 * normal.y + 0.58 * lamp), normal);
   }
 `;

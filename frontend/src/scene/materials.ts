@@ -37,7 +37,7 @@ export interface Surface {
 }
 
 /** Returns the textures of a surface. */
-export function mapsOf(surface: Surface | null | undefined): (Texture | null)[] {
+export function texturesOf(surface: Surface | null | undefined): (Texture | null)[] {
   if (!surface) return [];
   const { normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap } = surface;
   return [normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap];
@@ -59,12 +59,12 @@ export interface Look {
 /** RViz's color for surfaces without a material: RVIZ/ShadedRed. */
 export const RVIZ_RED = [1, 0, 0] as const;
 /** Below this alpha, RViz blends and does not write depth. */
-export const OPAQUE_FROM = 0.9998;
+export const MIN_OPAQUE_ALPHA = 0.9998;
 
 /** Makes a material translucent or opaque. */
-export function setBlending(material: Material, isSeeThrough: boolean): void {
-  material.transparent = isSeeThrough;
-  material.depthWrite = !isSeeThrough;
+export function setBlending(material: Material, isTranslucent: boolean): void {
+  material.transparent = isTranslucent;
+  material.depthWrite = !isTranslucent;
   material.needsUpdate = true;
 }
 
@@ -96,18 +96,18 @@ export class MaterialPool {
 
   get(look: Look): Material {
     const surface = (this.isLit && look.surface) || null;
-    const maps = [look.map, ...mapsOf(surface)].map((map) => map?.uuid);
+    const maps = [look.map, ...texturesOf(surface)].map((map) => map?.uuid);
     const numbers = [look.alpha, surface?.roughness, surface?.metalness, ...(surface?.emissive ?? [])];
     const key = [...look.color, ...numbers, ...maps, look.hasVertexColors, look.isDoubleSided, look.isBehind, this.lighting].join();
     this.usedKeys.add(key);
     let material = this.materials.get(key);
     if (!material) {
-      const isSeeThrough = look.alpha < OPAQUE_FROM;
+      const isTranslucent = look.alpha < MIN_OPAQUE_ALPHA;
       const style = {
         color: new Color(...look.color),
         opacity: look.alpha,
-        transparent: isSeeThrough,
-        depthWrite: !isSeeThrough,
+        transparent: isTranslucent,
+        depthWrite: !isTranslucent,
         map: look.map,
         vertexColors: look.hasVertexColors,
         side: look.isDoubleSided ? DoubleSide : FrontSide,

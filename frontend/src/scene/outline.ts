@@ -7,7 +7,7 @@ import {
   WebGLRenderTarget,
   type Object3D,
 } from "three";
-import { SELECTED } from "./layers";
+import { SELECTED_LAYER } from "./layers";
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 import type { Viewport } from "./viewport";
 
@@ -18,8 +18,8 @@ interface OutlineLook {
   fill: number;
 }
 
-const SELECTION: OutlineLook = { color: 0x5db0ff, layer: SELECTED, fill: 0.16 };
-const FRAGMENT = /* glsl */ `
+const SELECTION_LOOK: OutlineLook = { color: 0x5db0ff, layer: SELECTED_LAYER, fill: 0.16 };
+const FRAGMENT_SHADER = /* glsl */ `
   uniform sampler2D mask;
   uniform vec2 texel;
   uniform vec3 color;
@@ -28,18 +28,18 @@ const FRAGMENT = /* glsl */ `
   varying vec2 vUv;
   void main() {
     float inside = texture2D(mask, vUv).r;
-    float near = 0.0;
+    float dilated = 0.0;
     for (int x = -1; x <= 1; x++)
       for (int y = -1; y <= 1; y++)
-        near = max(near, texture2D(mask, vUv + vec2(x, y) * texel).r);
-    gl_FragColor = vec4(color, max((near - inside) * 0.95, inside * fill) * strength);
+        dilated = max(dilated, texture2D(mask, vUv + vec2(x, y) * texel).r);
+    gl_FragColor = vec4(color, max((dilated - inside) * 0.95, inside * fill) * strength);
   }
 `;
 /** Draws a line around the selected objects, also where they are hidden, and a tint over them. */
 export class Outline {
   private objects: readonly Object3D[] = [];
   private readonly mask = new WebGLRenderTarget(1, 1, { samples: 4 });
-  private readonly white = new MeshBasicMaterial({ color: 0xffffff, side: DoubleSide });
+  private readonly maskMaterial = new MeshBasicMaterial({ color: 0xffffff, side: DoubleSide });
   private readonly uniforms = {
     mask: { value: this.mask.texture },
     texel: { value: new Vector2() },
@@ -51,7 +51,7 @@ export class Outline {
   private readonly quad = new ScreenQuad(
     new ShaderMaterial({
       vertexShader: SCREEN_VERTEX,
-      fragmentShader: FRAGMENT,
+      fragmentShader: FRAGMENT_SHADER,
       uniforms: this.uniforms,
       transparent: true,
       depthTest: false,
@@ -61,7 +61,7 @@ export class Outline {
 
   constructor(
     private readonly viewport: Viewport,
-    private readonly look = SELECTION,
+    private readonly look = SELECTION_LOOK,
   ) {
     this.uniforms.color.value.setHex(look.color);
     this.uniforms.fill.value = look.fill;
@@ -89,7 +89,7 @@ export class Outline {
     this.uniforms.texel.value.set(width / size.x, width / size.y);
     renderer.setClearColor(0x000000);
     renderer.setRenderTarget(this.mask);
-    scene.overrideMaterial = this.white;
+    scene.overrideMaterial = this.maskMaterial;
     camera.layers.set(this.look.layer);
     renderer.render(scene, camera);
     camera.layers.set(0);

@@ -5,7 +5,7 @@ import { add, scale, type Bounds, type Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
 import { boundsOf } from "./initial-view";
 import type { Drawing } from "./displays/drawing";
-import { PICKABLE } from "./layers";
+import { PICKABLE_LAYER } from "./layers";
 import type { DescriptionRow, Hit } from "./picking";
 import { ScreenBox } from "./selection-box";
 import type { Viewport } from "./viewport";
@@ -36,8 +36,8 @@ export class Picker {
   rayAt(x: number, y: number): Raycaster {
     this.viewport.aim(this.session.view);
     const ray = new Raycaster();
-    ray.layers.enable(PICKABLE);
-    ray.setFromCamera(this.toDevice(x, y), this.viewport.camera);
+    ray.layers.enable(PICKABLE_LAYER);
+    ray.setFromCamera(this.toDeviceCoordinates(x, y), this.viewport.camera);
     return ray;
   }
 
@@ -72,17 +72,17 @@ export class Picker {
   /** Selects the nearest object at a position, or clears the selection. */
   selectAt(x: number, y: number, mode: SelectionMode = "replace"): void {
     const picked = this.objectAt(x, y);
-    const selectedObject = picked && !picked.hit.isGround;
-    this.session.selection.pick(selectedObject ? [{ display: picked.display, key: picked.hit.key }] : [], mode);
+    const isSelectable = picked && !picked.hit.isGround;
+    this.session.selection.pick(isSelectable ? [{ display: picked.display, key: picked.hit.key }] : [], mode);
   }
 
   /** Selects all visible objects in the rectangle between two positions. */
   selectBox(start: Vector2, end: Vector2, mode: SelectionMode): void {
     this.viewport.aim(this.session.view);
-    const [a, b] = [this.toDevice(start.x, start.y), this.toDevice(end.x, end.y)];
+    const [firstCorner, secondCorner] = [this.toDeviceCoordinates(start.x, start.y), this.toDeviceCoordinates(end.x, end.y)];
     const depths = new DepthMap(this.viewport);
-    const isSeen = depths.isVisible.bind(depths);
-    const box = new ScreenBox(this.viewport.camera, a.clone().min(b), a.clone().max(b), isSeen);
+    const isVisible = depths.isVisible.bind(depths);
+    const box = new ScreenBox(this.viewport.camera, firstCorner.clone().min(secondCorner), firstCorner.clone().max(secondCorner), isVisible);
     const items: SelectedItem[] = [];
     for (const [display, drawing] of this.listDrawings()) {
       for (const key of drawing.pickBox?.(box) ?? []) items.push({ display, key });
@@ -126,7 +126,7 @@ export class Picker {
     return boundsOf(box);
   }
 
-  private toDevice(x: number, y: number): Vector2 {
+  private toDeviceCoordinates(x: number, y: number): Vector2 {
     const { clientWidth, clientHeight } = this.viewport.canvas;
     return new Vector2((x / clientWidth) * 2 - 1, 1 - (y / clientHeight) * 2);
   }

@@ -41,8 +41,8 @@ export interface ScenePointer {
   readonly dy: number;
   /** The button that was pressed or released. */
   readonly button: "left" | "middle" | "right" | null;
-  readonly shift: boolean;
-  readonly ctrl: boolean;
+  readonly isShiftDown: boolean;
+  readonly isCtrlDown: boolean;
   /** The ray from the camera through the pointer. */
   readonly ray: Raycaster;
   /** The object of the drawing that the ray hits; during a drag, the one that was grabbed. */

@@ -6,7 +6,7 @@ const position = new Vector3();
 const orientation = new Quaternion();
 const ONE = new Vector3(1, 1, 1);
 
-/** Computes the matrix of a pose, x y z (m) qx qy qz qw, from index `at` on. */
+/** Computes the matrix of a pose, x y z (m) qx qy qz qw, from index `offset` on. */
 export function setPoseMatrix(values: ArrayLike<number>, matrix: Matrix4, offset = 0): Matrix4 {
   position.fromArray(values, offset);
   orientation.fromArray(values, offset + 3);
@@ -14,8 +14,8 @@ export function setPoseMatrix(values: ArrayLike<number>, matrix: Matrix4, offset
 }
 
 /** Computes the pose of a frame; returns false, and leaves `matrix` unchanged, if the frame has no transform. */
-export function framePose(frames: FrameStore, row: number, matrix: Matrix4): boolean {
-  if (!frames.has(row)) return false;
+export function readFramePose(frames: FrameStore, row: number, matrix: Matrix4): boolean {
+  if (!frames.hasPose(row)) return false;
   setPoseMatrix(frames.poses, matrix, row * 7);
   return true;
 }
@@ -29,7 +29,7 @@ export function readDataPose(frames: FrameStore, data: DisplayData, matrix: Matr
     setPoseMatrix(data.pose, matrix);
     return true;
   }
-  if (data.frame !== "" && data.frame !== frames.fixedFrame) return framePose(frames, frames.rowOf(data.frame), matrix);
+  if (data.frame !== "" && data.frame !== frames.fixedFrame) return readFramePose(frames, frames.rowOf(data.frame), matrix);
   matrix.identity();
   return true;
 }

@@ -21,7 +21,7 @@ export class RobotLight {
   private readonly studio = new StudioLight();
   private readonly shadow = new ContactShadow();
   /** The key of the visible robots, and the height of the ground below them, m. */
-  private ground = { what: "", height: 0 };
+  private ground = { robotsKey: "", height: 0 };
 
   constructor() {
     this.root.add(this.studio.root, this.shadow.root);
@@ -38,7 +38,7 @@ export class RobotLight {
     this.shadow.root.visible = lighting === "Soft";
     if (lighting === "Camera") return null;
     const key = robots.map((robot) => robot.visibleKey).join(";");
-    if (key !== this.ground.what) this.ground = { what: key, height: Math.min(...robots.map((robot) => robot.computeGround())) };
+    if (key !== this.ground.robotsKey) this.ground = { robotsKey: key, height: Math.min(...robots.map((robot) => robot.computeGround())) };
     const { height } = this.ground;
     if (lighting === "Soft") {
       this.shadow.update(robots.flatMap((robot) => robot.visibleMeshes), height);

@@ -11,7 +11,7 @@ export interface ScreenExtent {
 }
 
 /** Returns the extent of a box on a canvas; infinite if a part of the box is behind the camera. */
-export function extentOf({ min, max }: Bounds, camera: Camera, { width, height }: ViewSize): ScreenExtent {
+export function computeExtent({ min, max }: Bounds, camera: Camera, { width, height }: ViewSize): ScreenExtent {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
     return new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis])).applyMatrix4(camera.matrixWorldInverse);
   });

@@ -6,7 +6,7 @@ export function softenLight<T extends Material>(material: T): T {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", `#include <common>\n${SURFACE_LIGHT}`)
-      .replace("#include <opaque_fragment>", "outgoingLight = softly(diffuseColor.rgb, normal);\n#include <opaque_fragment>");
+      .replace("#include <opaque_fragment>", "outgoingLight = applySoftLight(diffuseColor.rgb, normal);\n#include <opaque_fragment>");
   };
   material.customProgramCacheKey = () => "soft";
   return material;

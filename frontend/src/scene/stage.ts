@@ -15,12 +15,12 @@ import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
 import { setInitialView, boundsOf } from "./initial-view";
 import { UncoveredArea } from "./uncovered-area";
-import { FINEST, FrameLoop, type Detail } from "./frame-loop";
-import { frameMaps } from "./map-look";
+import { FINEST_DETAIL, FrameLoop, type Detail } from "./frame-loop";
+import { fitMaps } from "./map-look";
 import { InspectLayer } from "./inspect/inspect-layer";
-import { SERVED, type MeshFiles } from "./meshes/mesh-files";
+import { SERVER_FILES, type MeshFiles } from "./meshes/mesh-files";
 import { MeshLibrary } from "./meshes/mesh-library";
-import type { StandIns } from "./meshes/stand-ins";
+import type { LodMeshes } from "./meshes/lod-meshes";
 import { Outline } from "./outline";
 import { Picker } from "./picker";
 import type { Interaction } from "./picking";
@@ -31,7 +31,7 @@ import { Viewport } from "./viewport";
 
 /** The stage counts as ready after this time even if no link has a pose: some robots never get a transform. */
 const POSE_TIMEOUT_MS = 5000;
-const NOT_ANTIALIASED: Detail = { ...FINEST, smooth: false };
+const NOT_ANTIALIASED_DETAIL: Detail = { ...FINEST_DETAIL, isAntialiased: false };
 
 interface DrawnDisplay {
   display: DisplayState;
@@ -59,7 +59,7 @@ export class Stage {
   /** The displays that were still loading something in the last frame. */
   private loadingKey = "";
   /** The time when all meshes were drawn but no link had a pose. */
-  private placelessSince: number | null = null;
+  private poselessSinceMs: number | null = null;
   /** The part of the canvas that nothing covers. */
   readonly uncoveredArea: UncoveredArea;
 
@@ -68,11 +68,11 @@ export class Stage {
     private readonly session: Session,
     private readonly panels: PanelHost,
     private readonly theme: ThemeState,
-    files: MeshFiles = SERVED,
-    standIns: StandIns | null = null,
+    files: MeshFiles = SERVER_FILES,
+    lodMeshes: LodMeshes | null = null,
   ) {
-    this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
-    this.viewport = new Viewport(container, () => this.loop.redraw(NOT_ANTIALIASED));
+    this.meshes = new MeshLibrary(session.meshProgress, files, lodMeshes);
+    this.viewport = new Viewport(container, () => this.loop.redraw(NOT_ANTIALIASED_DETAIL));
     this.uncoveredArea = new UncoveredArea(this.viewport, () => this.computeRobotBounds(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
     this.picker = new Picker(this.viewport, session, () => this.iterateEnabledDrawings());
     this.outline = new Outline(this.viewport);
@@ -83,12 +83,12 @@ export class Stage {
     this.overlays.add(this.focalShape.root);
     this.viewport.scene.add(this.overlays, this.inspectLayer.root, this.robotLight.root, this.backdrop.root);
     this.listen();
-    this.matchDisplays();
+    this.syncDrawings();
   }
 
   /** Whether robot or world, their meshes and transforms have been drawn, or transforms failed to arrive in time. */
   get isReady(): boolean {
-    const startMs = this.placelessSince;
+    const startMs = this.poselessSinceMs;
     return this.hasRobotSettled || (startMs !== null && performance.now() - startMs > POSE_TIMEOUT_MS);
   }
 
@@ -123,7 +123,7 @@ export class Stage {
     this.overlays.visible = false;
     const screenshot = this.viewport.takeScreenshot(scale);
     this.overlays.visible = true;
-    this.draw(FINEST);
+    this.draw(FINEST_DETAIL);
     return screenshot;
   }
 
@@ -141,13 +141,13 @@ export class Stage {
   /** Fits the whole selection, or everything if nothing is selected, into view from the current direction. */
   fit(): void {
     const box = this.picker.computeSelectionBounds() ?? this.computeAllBounds();
-    if (box) this.session.view.fit(box, this.uncoveredArea.center());
+    if (box) this.session.view.fit(box, this.uncoveredArea.centerView());
   }
 
   /** Fits all robots into view from the current direction. */
   fitRobots(): void {
     const box = this.computeSampledRobotBounds();
-    if (box) this.session.view.fit(box, this.uncoveredArea.center());
+    if (box) this.session.view.fit(box, this.uncoveredArea.centerView());
   }
 
   /** Notifies the drawings of the state of the Interact tool. */
@@ -165,15 +165,15 @@ export class Stage {
   private listen(): void {
     const { session, loop } = this;
     const { displays, frames, view, selection } = session;
-    session.drawingPace.software = this.viewport.software;
-    if (this.viewport.software !== null) loop.expectSlow();
+    session.drawingPace.softwareRenderer = this.viewport.softwareRenderer;
+    if (this.viewport.softwareRenderer !== null) loop.expectSlow();
     loop.judged.on((isLate) => session.drawingPace.countFrame(isLate));
     session.drawingPace.changed.on(() => {
       this.viewport.isSlow ||= session.drawingPace.isSlow;
       for (const display of displays.displays) this.onPropertiesChanged(display);
     });
     const invalidate = (): void => loop.invalidate();
-    displays.treeChanged.on(() => this.matchDisplays());
+    displays.treeChanged.on(() => this.syncDrawings());
     displays.rowsChanged.on((display) => this.onPropertiesChanged(display));
     displays.valueChanged.on(({ display }) => {
       if (display) this.onPropertiesChanged(display);
@@ -194,7 +194,7 @@ export class Stage {
     view.changed.on(invalidate);
     selection.changed.on(() => this.onSelectionChanged());
     session.focus.hoverChanged.on(invalidate);
-    session.time.wasReset.on(invalidate);
+    session.time.displaysCleared.on(invalidate);
     const applyTheme = (theme: Theme): void => {
       this.backdrop.theme = theme;
       invalidate();
@@ -203,7 +203,7 @@ export class Stage {
     this.theme.changed.on(applyTheme);
   }
 
-  private matchDisplays(): void {
+  private syncDrawings(): void {
     const { displays } = this.session.displays;
     for (const [id, { display, drawing, pacing }] of this.drawings) {
       if (displays.includes(display)) continue;
@@ -220,9 +220,9 @@ export class Stage {
         const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
         const showWithFrame = (show: () => void): void => this.loop.schedule(show);
-        const camera = (): Camera => this.viewport.camera;
-        const affordsStudio = (): boolean => this.viewport.affordsStudio;
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, camera, affordsStudio });
+        const getCamera = (): Camera => this.viewport.camera;
+        const canAffordStudio = (): boolean => this.viewport.canAffordStudio;
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, getCamera, canAffordStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.onInteractionChanged?.(this.interaction);
@@ -254,8 +254,8 @@ export class Stage {
 
   private draw(detail: Detail): void {
     const { view } = this.session;
-    this.viewport.share = detail.share;
-    frameMaps(this.iterateEnabledDrawings(), view, this.uncoveredArea);
+    this.viewport.resolutionShare = detail.resolutionShare;
+    fitMaps(this.iterateEnabledDrawings(), view, this.uncoveredArea);
     this.viewport.aim(view);
     this.focalShape.updatePose(view);
     const { lighting } = this;
@@ -265,7 +265,7 @@ export class Stage {
     for (const { display, drawing, pacing } of this.drawings.values()) {
       drawing.root.visible = display.isEnabled;
       if (!display.isEnabled) continue;
-      if (pacing.isDue(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
+      if (pacing.shouldUpdate(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       if (drawing.isSettled?.() === false) loadingKey += ` ${display.id}`;
     }
     const isSettled = loadingKey === "";
@@ -274,20 +274,22 @@ export class Stage {
       this.session.displays.statusChanged.emit(null);
     }
     this.hasRobotSettled ||= isSettled && [...this.listRobots(), ...this.listWorlds()].some((model) => model.hasPose);
-    if (isSettled && this.session.robot !== null) this.placelessSince ??= now;
+    if (isSettled && this.session.robot !== null) this.poselessSinceMs ??= now;
     this.setInitialView(isSettled);
-    const ownLight = this.listWorlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.update(this.listWorlds().length > 0 ? "Camera" : lighting, this.listRobots(), this.backgroundColor);
+    const robotLighting = this.listWorlds().length > 0 ? "Camera" : lighting;
+    const worldLight = this.listWorlds().find((world) => world.ownLight)?.ownLight;
+    const ownLight = worldLight ?? this.robotLight.update(robotLighting, this.listRobots(), this.backgroundColor);
     this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
     this.viewport.applyLight(ownLight);
     this.inspectLayer.update();
     this.outline.set(this.listSelectedObjects());
-    const isMoving = detail.moving && ownLight === null;
+    const isMoving = detail.isMoving && ownLight === null;
     if (isMoving) for (const [, drawing] of this.iterateEnabledDrawings()) drawing.simplify?.(this.viewport.drawnView);
-    this.viewport.render(detail.smooth);
+    this.viewport.render(detail.isAntialiased);
     if (isMoving) for (const [, drawing] of this.iterateEnabledDrawings()) drawing.simplify?.(null);
     this.outline.render();
     this.flash.render();
-    this.drawElsewhere();
+    this.drawOwnPanels();
   }
 
   /** The lighting of robots; a robot in a world is lit as the world's display specifies. */
@@ -296,7 +298,7 @@ export class Stage {
     if (world) return world.lighting === "Soft" ? "Soft" : "Camera";
     const light = this.session.displays.globalOptions.text("Camera", "Light");
     if (light === "Camera") return "Camera";
-    return light === "Studio" || this.viewport.affordsStudio ? "Studio" : "Soft";
+    return light === "Studio" || this.viewport.canAffordStudio ? "Studio" : "Soft";
   }
 
   /** Places the camera if no user has: in front of the robot's visible parts, or into a world once it is complete. */
@@ -310,7 +312,7 @@ export class Stage {
       const needsFit = view.awaitsFit(visibleKey);
       if (visibleKey === "" || !(needsFit || view.awaitsSize)) return;
       const box = this.computeSampledRobotBounds();
-      if (box && needsFit) view.fitFirst(box, this.uncoveredArea.center(), visibleKey);
+      if (box && needsFit) view.fitFirst(box, this.uncoveredArea.centerView(), visibleKey);
       if (box && isSettled) view.reportSize(box, Math.min(...robots.map((robot) => robot.computeGround())));
     }
     this.viewport.aim(view);
@@ -349,7 +351,7 @@ export class Stage {
   }
 
   /** Draws the displays that show the scene in their own panels. */
-  private drawElsewhere(): void {
+  private drawOwnPanels(): void {
     const { renderer, scene } = this.viewport;
     const view: DrawnScene = { renderer, scene, background: this.backgroundColor, drawOnly: (accepts, draw) => this.drawOnly(accepts, draw) };
     for (const { display, drawing } of this.drawings.values()) if (display.isEnabled) drawing.afterFrame?.(view);
@@ -369,9 +371,7 @@ export class Stage {
   private onSelectionChanged(): void {
     const keys = new Map<string, Set<string>>();
     for (const { display, key } of this.session.selection.items) {
-      let displayKeys = keys.get(display);
-      if (!displayKeys) keys.set(display, (displayKeys = new Set()));
-      displayKeys.add(key);
+      keys.set(display, (keys.get(display) ?? new Set<string>()).add(key));
     }
     const noKeys: ReadonlySet<string> = new Set();
     for (const [id, { drawing }] of this.drawings) drawing.highlight?.(keys.get(id) ?? noKeys);

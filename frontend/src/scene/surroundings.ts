@@ -26,11 +26,11 @@ type Rgb = readonly [number, number, number];
 type Sky = readonly [below: Rgb, middle: Rgb, above: Rgb];
 
 /** The pixels of a sky texture from the nadir to the zenith. */
-const SKY_PIXELS = 64;
+const SKY_HEIGHT_PX = 64;
 /** The fraction of white that is mixed into a backdrop at its horizon. */
 const HORIZON_BRIGHTNESS = 0.18;
-const DAY: Sky = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
-const NIGHT: Sky = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
+const DAY_SKY: Sky = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
+const NIGHT_SKY: Sky = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
 
 /** Sets the surroundings of a scene, and keeps textures that do not change. */
 export class SkyAndFog {
@@ -43,24 +43,26 @@ export class SkyAndFog {
     scene.backgroundRotation.x = Math.PI / 2;
   }
 
-  /** Applies surroundings; `isOrthographic` for an orthographic camera, which sees the same color of a sky everywhere. */
-  set({ daylight, fog, backdrop = null }: Surroundings, isOrthographic: boolean): void {
+  /**
+   * Applies surroundings; `isOrthographic` for an orthographic camera, which sees the same color of a sky everywhere.
+   */
+  apply({ daylight, fog, backdrop = null }: Surroundings, isOrthographic: boolean): void {
     const key = daylight ?? backdrop;
     if (key !== this.skyKey) {
       this.sky?.dispose();
-      this.sky = key === null ? null : createSkyTexture(typeof key === "number" ? skyAt(key) : skyOf(key));
+      this.sky = key === null ? null : createSkyTexture(typeof key === "number" ? skyForDaylight(key) : skyForColor(key));
       this.skyKey = key;
     }
     if (!isOrthographic) this.scene.background = this.sky;
-    else this.scene.background = daylight === null ? null : new Color(...skyAt(daylight)[1]);
+    else this.scene.background = daylight === null ? null : new Color(...skyForDaylight(daylight)[1]);
     const fogKey = JSON.stringify(fog);
     if (fogKey === this.fogKey) return;
     this.fogKey = fogKey;
-    this.scene.fog = fog ? fogOf(fog) : null;
+    this.scene.fog = fog ? createFog(fog) : null;
   }
 }
 
-function fogOf({ color: [r = 1, g = 1, b = 1], start, end, density }: FogScene): Fog | FogExp2 {
+function createFog({ color: [r = 1, g = 1, b = 1], start, end, density }: FogScene): Fog | FogExp2 {
   const hex = new Color(r, g, b).getHex();
   return density === null ? new Fog(hex, start, end) : new FogExp2(hex, density);
 }
@@ -70,12 +72,12 @@ function colorAt(height: number, [nadir, horizon, zenith]: Sky): Rgb {
   return height < 0 ? mix(horizon, nadir, Math.min(1, -8 * height)) : mix(horizon, zenith, Math.sqrt(height));
 }
 
-function skyAt(daylight: number): Sky {
-  return [mix(NIGHT[0], DAY[0], daylight), mix(NIGHT[1], DAY[1], daylight), mix(NIGHT[2], DAY[2], daylight)];
+function skyForDaylight(daylight: number): Sky {
+  return [mix(NIGHT_SKY[0], DAY_SKY[0], daylight), mix(NIGHT_SKY[1], DAY_SKY[1], daylight), mix(NIGHT_SKY[2], DAY_SKY[2], daylight)];
 }
 
 /** Returns the sky of a backdrop color, brighter at the horizon. */
-function skyOf(color: string): Sky {
+function skyForColor(color: string): Sky {
   const { r, g, b } = new Color(color);
   const rgb: Rgb = [r, g, b];
   return [rgb, mix(rgb, [1, 1, 1], HORIZON_BRIGHTNESS), rgb];
@@ -87,12 +89,12 @@ function mix(a: Rgb, b: Rgb, fraction: number): Rgb {
 }
 
 function createSkyTexture(sky: Sky): DataTexture {
-  const pixels = new Uint8Array(4 * SKY_PIXELS);
-  for (let row = 0; row < SKY_PIXELS; row++) {
-    const rgb = colorAt(Math.sin(((row + 0.5) / SKY_PIXELS - 0.5) * Math.PI), sky);
+  const pixels = new Uint8Array(4 * SKY_HEIGHT_PX);
+  for (let row = 0; row < SKY_HEIGHT_PX; row++) {
+    const rgb = colorAt(Math.sin(((row + 0.5) / SKY_HEIGHT_PX - 0.5) * Math.PI), sky);
     pixels.set([...rgb.map((channel) => Math.round(255 * channel)), 255], 4 * row);
   }
-  const texture = new DataTexture(pixels, 1, SKY_PIXELS);
+  const texture = new DataTexture(pixels, 1, SKY_HEIGHT_PX);
   texture.mapping = EquirectangularReflectionMapping;
   texture.magFilter = texture.minFilter = LinearFilter;
   texture.needsUpdate = true;

@@ -1,10 +1,10 @@
 import type { Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
 import type { Bounds } from "../state/views/vector";
-import { extentOf, type ScreenExtent } from "./screen-extent";
+import { computeExtent, type ScreenExtent } from "./screen-extent";
 
 /** The maximum share of the canvas's width and height that may be excluded when the camera fits something into view. */
-const MAX_COVERED = 0.6;
+const MAX_COVERED_SHARE = 0.6;
 
 /** A viewport whose center can be shifted on the canvas; what `UncoveredArea` needs of `Viewport`. */
 interface OffCenterView {
@@ -18,7 +18,7 @@ interface OffCenterView {
 export class UncoveredArea {
   /** Returns the width covered at the right of the canvas, pixels. */
   getCoveredWidth: () => number = () => 0;
-  private coveredTop = 0;
+  private noticeHeight = 0;
 
   /**
    * @param computeRobotBounds - returns the bounding box of all robots.
@@ -32,11 +32,11 @@ export class UncoveredArea {
   ) {}
 
   /** Returns the size of the free part, and moves the camera's center to the center of that part. */
-  center(): ViewSize {
+  centerView(): ViewSize {
     const { width, height } = this.viewport.size;
-    const [right, coveredHeight] = [Math.min(this.getCoveredWidth(), width * MAX_COVERED), Math.min(this.coveredTop, height * MAX_COVERED)];
-    Object.assign(this.viewport, { shiftLeft: right / 2, shiftDown: coveredHeight / 2 });
-    return { width: width - right, height: height - coveredHeight };
+    const [coveredWidth, coveredHeight] = [Math.min(this.getCoveredWidth(), width * MAX_COVERED_SHARE), Math.min(this.noticeHeight, height * MAX_COVERED_SHARE)];
+    Object.assign(this.viewport, { shiftLeft: coveredWidth / 2, shiftDown: coveredHeight / 2 });
+    return { width: width - coveredWidth, height: height - coveredHeight };
   }
 
   /**
@@ -47,8 +47,8 @@ export class UncoveredArea {
     const { viewport } = this;
     const previousShift = viewport.shiftLeft;
     viewport.shiftLeft = 0;
-    const target = Math.min(this.getCoveredWidth(), viewport.size.width * MAX_COVERED) / 2;
-    const extent = target > 0 ? this.extentOfRobots() : null;
+    const target = Math.min(this.getCoveredWidth(), viewport.size.width * MAX_COVERED_SHARE) / 2;
+    const extent = target > 0 ? this.computeRobotExtent() : null;
     viewport.shiftLeft = extent ? Math.max(0, Math.min(target, extent.left)) : target;
     if (viewport.shiftLeft !== previousShift) this.invalidate();
   }
@@ -60,21 +60,21 @@ export class UncoveredArea {
   avoidNotices(height: number): void {
     const { viewport } = this;
     const previousShift = viewport.shiftDown;
-    this.coveredTop = height;
+    this.noticeHeight = height;
     viewport.shiftDown = 0;
-    const extent = height > 0 ? this.extentOfRobots() : null;
+    const extent = height > 0 ? this.computeRobotExtent() : null;
     if (extent) viewport.shiftDown = Math.max(0, Math.min(height - extent.top, viewport.size.height - extent.bottom));
     if (viewport.shiftDown !== previousShift) this.invalidate();
   }
 
   /** The rightmost pixel column that robots cover, from the left edge of the canvas; 0 without robots. */
   get robotsRightEdge(): number {
-    return this.extentOfRobots()?.right ?? 0;
+    return this.computeRobotExtent()?.right ?? 0;
   }
 
-  private extentOfRobots(): ScreenExtent | null {
+  private computeRobotExtent(): ScreenExtent | null {
     const box = this.computeRobotBounds();
     this.updateCamera();
-    return box && extentOf(box, this.viewport.camera, this.viewport.size);
+    return box && computeExtent(box, this.viewport.camera, this.viewport.size);
   }
 }

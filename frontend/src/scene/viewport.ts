@@ -12,27 +12,27 @@ import {
   WebGLRenderer,
 } from "three";
 import type { ViewState } from "../state/view";
-import { FIELD_OF_VIEW, type Camera, type ViewSize } from "../state/views/camera";
+import { FIELD_OF_VIEW_RAD, type Camera, type ViewSize } from "../state/views/camera";
 import { readNumber } from "../state/views/view-controller";
 import { distanceBetween } from "../state/views/vector";
-import { AMBIENT } from "./light";
-import { Smoothing } from "./smoothing";
+import { AMBIENT_SHARE } from "./light";
+import { Antialiasing } from "./antialiasing";
 import { SkyAndFog, type OwnLight } from "./surroundings";
 
-const LARGEST_PIXEL_RATIO = 2;
-const FAR_CLIP = 1000;
+const MAX_PIXEL_RATIO = 2;
+const FAR_CLIP_M = 1000;
 /**
  * The largest ratio of the distance and the near clip distance; from farther away, the near clip distance grows,
  * because depths become imprecise.
  */
 const MAX_DEPTH_RATIO = 2000;
 /** The intensity of the camera's light while lights in the scene are used. */
-const FAINT_LIGHT = 0.15;
-const NOTHING = { background: null, daylight: null, fog: null };
+const FAINT_LIGHT_INTENSITY = 0.15;
+const NO_SURROUNDINGS = { background: null, daylight: null, fog: null };
 /** The names of renderers that run on the CPU. */
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+const SOFTWARE_RENDERERS = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 /** The longest side of a screenshot, pixels. */
-const LARGEST_SCREENSHOT = 8192;
+const MAX_SCREENSHOT_PX = 8192;
 
 // RViz writes colors to the screen as in the URDF; a surface facing the camera has exactly its color.
 ColorManagement.enabled = false;
@@ -40,26 +40,26 @@ ColorManagement.enabled = false;
 /** The canvas, its camera, and the light that follows the camera. */
 export class Viewport {
   readonly scene = new Scene();
-  private readonly perspective = new PerspectiveCamera((FIELD_OF_VIEW * 180) / Math.PI, 1, 0.01, FAR_CLIP);
+  private readonly perspective = new PerspectiveCamera((FIELD_OF_VIEW_RAD * 180) / Math.PI, 1, 0.01, FAR_CLIP_M);
   private readonly orthographic = new OrthographicCamera();
   private activeCamera: PerspectiveCamera | OrthographicCamera = this.perspective;
   readonly renderer: WebGLRenderer;
-  private readonly smoothing = new Smoothing();
-  private resolution = 1;
+  private readonly antialiasing = new Antialiasing();
+  private currentShare = 1;
   /** The shift of the camera's center to the left of the canvas's center, pixels. */
   shiftLeft = 0;
   /** The shift of the camera's center downwards, pixels. */
   shiftDown = 0;
-  private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
+  private readonly ambient = new AmbientLight(0xffffff, AMBIENT_SHARE * Math.PI);
   private readonly surroundings = new SkyAndFog(this.scene);
   private ownBackground = "#303030";
   private rendererName: string | null = null;
   /** Whether frames were late. It stays set, because light that changes back and forth is worse than either light. */
   isSlow = false;
-  private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
+  private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT_SHARE) * Math.PI);
 
   constructor(readonly container: HTMLElement, onResized: () => void) {
-    this.renderer = makeRenderer();
+    this.renderer = createRenderer();
     // Reading the result of compilation blocks until shaders are compiled, and only developers can act on it.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
@@ -87,14 +87,14 @@ export class Viewport {
   }
 
   /** Whether a light with shadows would not make the page slow: a GPU draws, and was not found slow. */
-  get affordsStudio(): boolean {
-    return this.software === null && !this.isSlow;
+  get canAffordStudio(): boolean {
+    return this.softwareRenderer === null && !this.isSlow;
   }
 
   /** The name of a renderer on the CPU; null if a GPU draws. */
-  get software(): string | null {
-    this.rendererName ??= nameOfRenderer(this.renderer.getContext());
-    return SOFTWARE.test(this.rendererName) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.rendererName)?.[0] ?? this.rendererName) : null;
+  get softwareRenderer(): string | null {
+    this.rendererName ??= readRendererName(this.renderer.getContext());
+    return SOFTWARE_RENDERERS.test(this.rendererName) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.rendererName)?.[0] ?? this.rendererName) : null;
   }
 
   /**
@@ -102,11 +102,11 @@ export class Viewport {
    */
   applyLight(ownLight: OwnLight | null): void {
     const { renderer } = this;
-    this.headlight.intensity = (ownLight ? FAINT_LIGHT : 1 - AMBIENT) * Math.PI;
-    this.ambient.intensity = ownLight ? 0 : AMBIENT * Math.PI;
+    this.headlight.intensity = (ownLight ? FAINT_LIGHT_INTENSITY : 1 - AMBIENT_SHARE) * Math.PI;
+    this.ambient.intensity = ownLight ? 0 : AMBIENT_SHARE * Math.PI;
     renderer.shadowMap.enabled = ownLight?.hasShadows ?? false;
     renderer.setClearColor(new Color(ownLight?.background ?? this.ownBackground));
-    this.surroundings.set(ownLight ?? NOTHING, this.activeCamera === this.orthographic);
+    this.surroundings.apply(ownLight ?? NO_SURROUNDINGS, this.activeCamera === this.orthographic);
   }
 
   /** The current camera: views differ in their projection. */
@@ -118,7 +118,7 @@ export class Viewport {
   aim(view: ViewState): void {
     const viewCamera = view.camera;
     this.activeCamera = viewCamera.scale === null ? this.perspective : this.orthographic;
-    this.project(viewCamera, readNumber(view.values, "Near Clip Distance", 0.01));
+    this.updateProjection(viewCamera, readNumber(view.values, "Near Clip Distance", 0.01));
     this.applyShift();
     this.activeCamera.matrix
       .makeBasis(new Vector3(...viewCamera.right), new Vector3(...viewCamera.up), new Vector3(...viewCamera.back))
@@ -128,9 +128,9 @@ export class Viewport {
   }
 
   /** The share of the screen's pixels drawn along each side; the size of the image on the page does not change. */
-  set share(share: number) {
-    if (share === this.resolution) return;
-    this.resolution = share;
+  set resolutionShare(resolutionShare: number) {
+    if (resolutionShare === this.currentShare) return;
+    this.currentShare = resolutionShare;
     this.resize();
   }
 
@@ -147,7 +147,7 @@ export class Viewport {
   /** Draws the scene; with antialiasing if `isFine`. */
   render(isFine: boolean): void {
     const draw = (): void => this.renderer.render(this.scene, this.camera);
-    if (isFine) this.smoothing.render(this.renderer, draw);
+    if (isFine) this.antialiasing.render(this.renderer, draw);
     else draw();
     this.canvas.style.visibility = "";
   }
@@ -156,8 +156,8 @@ export class Viewport {
   takeScreenshot(scale: number): Promise<Blob | null> {
     const { renderer, canvas } = this;
     const { width, height } = this.size;
-    const largest = Math.min(renderer.capabilities.maxTextureSize, LARGEST_SCREENSHOT) / Math.max(width, height);
-    renderer.setPixelRatio(Math.min(scale, largest));
+    const maxScale = Math.min(renderer.capabilities.maxTextureSize, MAX_SCREENSHOT_PX) / Math.max(width, height);
+    renderer.setPixelRatio(Math.min(scale, maxScale));
     renderer.setSize(width, height, false);
     this.render(true);
     // The frame is available only until the browser regains control.
@@ -166,17 +166,17 @@ export class Viewport {
     return screenshot;
   }
 
-  private project(viewCamera: Camera, nearDistance: number): void {
+  private updateProjection(viewCamera: Camera, nearDistance: number): void {
     const { perspective, orthographic } = this;
     const { width, height } = this.size;
     if (viewCamera.scale !== null) {
       const [x, y] = [width / viewCamera.scale / 2, height / viewCamera.scale / 2];
-      Object.assign(orthographic, { left: -x, right: x, bottom: -y, top: y, near: nearDistance, far: FAR_CLIP });
+      Object.assign(orthographic, { left: -x, right: x, bottom: -y, top: y, near: nearDistance, far: FAR_CLIP_M });
       orthographic.updateProjectionMatrix();
       return;
     }
     const distance = viewCamera.focal ? distanceBetween(viewCamera.position, viewCamera.focal) : 0;
-    const clip = { near: Math.max(nearDistance, distance / MAX_DEPTH_RATIO), far: Math.max(FAR_CLIP, distance * 10) };
+    const clip = { near: Math.max(nearDistance, distance / MAX_DEPTH_RATIO), far: Math.max(FAR_CLIP_M, distance * 10) };
     Object.assign(perspective, { aspect: width / height, ...clip });
     perspective.updateProjectionMatrix();
   }
@@ -190,7 +190,7 @@ export class Viewport {
   private resize(): void {
     const width = Math.max(1, this.container.clientWidth);
     const height = Math.max(1, this.container.clientHeight);
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO) * this.resolution);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, MAX_PIXEL_RATIO) * this.currentShare);
     this.renderer.setSize(width, height);
   }
 }
@@ -199,7 +199,7 @@ export class Viewport {
  * Creates the renderer. Its canvas is opaque, which spares the browser from drawing what is behind; three.js has no
  * option for that.
  */
-function makeRenderer(): WebGLRenderer {
+function createRenderer(): WebGLRenderer {
   const canvas = document.createElement("canvas");
   const options = { antialias: false, powerPreference: "high-performance" } as const;
   const context = canvas.getContext("webgl2", { ...options, alpha: false });
@@ -207,7 +207,7 @@ function makeRenderer(): WebGLRenderer {
 }
 
 /** Returns the name of the renderer from the graphics driver; empty if the browser does not reveal it. */
-function nameOfRenderer(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
+function readRendererName(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
   const extension = gl.getExtension("WEBGL_debug_renderer_info");
   return String(gl.getParameter(extension ? extension.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }

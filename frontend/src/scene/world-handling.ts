@@ -10,7 +10,7 @@ import type { ToolEvent } from "./tools/tool";
 /** The tools that leave mouse events on models to other handlers. */
 export const PASSIVE_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
 /** The minimum time between two requests of a page, ms. */
-const PERIOD_MS = 50;
+const REQUEST_INTERVAL_MS = 50;
 /** The force in N per m between the pulled point of a link and the mouse. */
 const PULL_STIFFNESS_N_PER_M = 50;
 const PULL_COLOR = "#ff2f6d";
@@ -25,13 +25,13 @@ interface ModelGrab {
   readonly drawing: WorldDrawing;
   readonly link: string;
   readonly point: Vector3;
-  readonly start: Vector3;
+  readonly startPosition: Vector3;
   readonly plane: Plane;
   readonly isPull: boolean;
-  lastMs: number;
+  lastSentMs: number;
   offset: Vector3;
   /** The position of the mouse in the fixed frame during a pull. */
-  readonly target: Vector3;
+  readonly pointerPosition: Vector3;
   /** The timer that repeats the force while the mouse rests; 0 for none. */
   timer: number;
 }
@@ -53,50 +53,61 @@ export class WorldHandling {
     this.line.root.material.depthTest = false;
     this.line.root.renderOrder = RENDER_ORDER;
     stage.viewport.scene.add(this.line.root);
-    session.simulation.findFreePlace = () => stage.world?.drawing.findFreePlace() ?? [0, 0, 0];
+    session.simulation.findFreePosition = () => stage.world?.drawing.findFreePosition() ?? [0, 0, 0];
   }
 
   /** Handles an event; returns false if it is left to the active tool. */
   onPointer(event: ToolEvent): boolean {
     if (this.currentGrab) {
-      if (event.type === "move" && event.left) this.move(this.currentGrab, event);
-      else if (event.type === "up" && !event.left) this.release(this.currentGrab);
+      if (event.type === "move" && event.isLeftDown) this.drag(this.currentGrab, event);
+      else if (event.type === "up" && !event.isLeftDown) this.release(this.currentGrab);
       return true;
     }
     const { simulation, modeling, tools } = this.session;
     if (!simulation.isPresent || modeling.isActive || (tools.current && !PASSIVE_TOOLS.includes(tools.current.cls))) return false;
-    if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
-    if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
+    if (event.type === "down" && event.button === "left" && event.isCtrlDown) return this.grab(event);
+    if (event.type === "up" && event.button === "right" && event.isClick) this.openMenu(event);
     return false;
   }
 
   private grab(event: ToolEvent): boolean {
-    const picked = this.find(event);
+    const picked = this.findLinkAt(event);
     const camera = this.stage.viewport.camera;
     if (!picked?.matrix) return false;
-    const { drawing, link, point: at, matrix } = picked;
-    const normal = event.shift ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
-    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, at);
-    const point = at.clone().applyMatrix4(matrix.clone().invert());
-    this.currentGrab = { drawing, link, point, start: at.clone(), plane, isPull: event.shift, lastMs: -Infinity, offset: new Vector3(), target: at.clone(), timer: 0 };
-    if (event.shift) this.currentGrab.timer = window.setInterval(() => this.repeatPull(), PERIOD_MS);
+    const { drawing, link, point: position, matrix } = picked;
+    const normal = event.isShiftDown ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, position);
+    const point = position.clone().applyMatrix4(matrix.clone().invert());
+    this.currentGrab = {
+      drawing,
+      link,
+      point,
+      startPosition: position.clone(),
+      plane,
+      isPull: event.isShiftDown,
+      lastSentMs: -Infinity,
+      offset: new Vector3(),
+      pointerPosition: position.clone(),
+      timer: 0,
+    };
+    if (event.isShiftDown) this.currentGrab.timer = window.setInterval(() => this.repeatPull(), REQUEST_INTERVAL_MS);
     this.stage.viewport.canvas.style.cursor = "grabbing";
-    if (!event.shift) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
+    if (!event.isShiftDown) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
     return true;
   }
 
-  private move(grab: ModelGrab, event: ToolEvent): void {
+  private drag(grab: ModelGrab, event: ToolEvent): void {
     const target = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(grab.plane, new Vector3());
     if (!target) return;
     if (grab.isPull) {
-      grab.target.copy(target);
+      grab.pointerPosition.copy(target);
       return;
     }
-    target.z = grab.start.z; // keep the exact height, from which the intersection deviates
-    grab.offset = target.sub(grab.start);
+    target.z = grab.startPosition.z; // keep the exact height, from which the intersection deviates
+    grab.offset = target.sub(grab.startPosition);
     const now = performance.now();
-    if (now - grab.lastMs < PERIOD_MS) return;
-    grab.lastMs = now;
+    if (now - grab.lastSentMs < REQUEST_INTERVAL_MS) return;
+    grab.lastSentMs = now;
     this.send(grab);
   }
 
@@ -106,8 +117,8 @@ export class WorldHandling {
     const matrix = grab?.drawing.poseOf(grab.link);
     if (!grab || !matrix) return;
     const start = grab.point.clone().applyMatrix4(matrix);
-    grab.offset = grab.target.clone().sub(start);
-    this.line.setSegments(new Float32Array([...start.toArray(), ...grab.target.toArray()]));
+    grab.offset = grab.pointerPosition.clone().sub(start);
+    this.line.setSegments(new Float32Array([...start.toArray(), ...grab.pointerPosition.toArray()]));
     this.stage.loop.invalidate();
     this.send(grab);
   }
@@ -123,13 +134,13 @@ export class WorldHandling {
 
   private send({ drawing, link, point, offset, isPull }: ModelGrab): void {
     const { simulation } = this.session;
-    const inWorld = drawing.transformToWorld(offset);
-    if (isPull) simulation.push(link, point.toArray(), inWorld.multiplyScalar(PULL_STIFFNESS_N_PER_M).toArray());
-    else simulation.drag(modelOf(link), inWorld.toArray(), false);
+    const offsetInWorld = drawing.transformToWorld(offset);
+    if (isPull) simulation.push(link, point.toArray(), offsetInWorld.multiplyScalar(PULL_STIFFNESS_N_PER_M).toArray());
+    else simulation.drag(modelOf(link), offsetInWorld.toArray(), false);
   }
 
   private openMenu(event: ToolEvent): void {
-    const picked = this.find(event);
+    const picked = this.findLinkAt(event);
     const { simulation, view, frames, sceneMenu } = this.session;
     const texts = strings.simulation;
     const point = picked?.point ?? this.stage.picker.groundAt(event.x, event.y);
@@ -139,14 +150,14 @@ export class WorldHandling {
     if (picked) {
       const model = modelOf(picked.link);
       const frame = picked.link.split("::").at(-1) ?? "";
-      if (frames.has(frames.rowOf(frame))) choices.push({ label: texts.follow(frame), run: () => view.set("Target Frame", frame) });
+      if (frames.hasPose(frames.rowOf(frame))) choices.push({ label: texts.follow(frame), run: () => view.setProperty("Target Frame", frame) });
       choices.push({ label: texts.remove(model), run: () => simulation.remove(model) });
     }
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }
 
   /** Returns the link of a world under the pointer. */
-  private find(event: ToolEvent): { drawing: WorldDrawing; link: string; point: Vector3; matrix: Matrix4 | null } | null {
+  private findLinkAt(event: ToolEvent): { drawing: WorldDrawing; link: string; point: Vector3; matrix: Matrix4 | null } | null {
     const picked = this.stage.picker.objectAt(event.x, event.y);
     if (!(picked?.drawing instanceof WorldDrawing)) return null;
     const { key, point } = picked.hit;

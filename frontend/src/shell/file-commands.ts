@@ -6,7 +6,7 @@ import { saveText } from "../widgets/save-file";
 import { FileDialog } from "./file-dialog";
 
 /** The maximum size of a file in bytes: with its quotes escaped, it must fit into a message to the server. */
-const MAX_BYTES = 800_000;
+const MAX_FILE_BYTES = 800_000;
 const CONTENT_TYPE = "application/yaml";
 
 /** The commands on the configuration file. They ask before changes are lost. */
@@ -14,15 +14,15 @@ export class FileCommands {
   /** The pending request, which is repeated if the user agrees to discard changes. */
   private pendingRequest: ((discardsChanges: boolean) => void) | null = null;
   /** Called after the file has been saved. */
-  private afterSaving: (() => void) | null = null;
+  private onSaved: (() => void) | null = null;
   private dialog: FileDialog | null = null;
 
   constructor(private readonly state: ConfigurationState) {
     state.refused.on((refusal) => this.onRefused(refusal));
     state.saved.on(() => {
-      const continueAfterSaving = this.afterSaving;
-      this.afterSaving = null;
-      continueAfterSaving?.();
+      const onSaved = this.onSaved;
+      this.onSaved = null;
+      onSaved?.();
     });
     state.texts.on(({ name, text }) => saveText(name, text, CONTENT_TYPE));
     window.addEventListener("beforeunload", (event) => {
@@ -31,7 +31,7 @@ export class FileCommands {
     });
   }
 
-  begin(): void {
+  createFile(): void {
     this.sendRequest((discardsChanges) => this.state.createFile(discardsChanges));
   }
 
@@ -41,7 +41,7 @@ export class FileCommands {
 
   /** Lets the user choose a file on the server. */
   chooseFile(): void {
-    this.show(new FileDialog(this.state, "open", (path) => this.open(path)));
+    this.openDialog(new FileDialog(this.state, "open", (path) => this.open(path)));
   }
 
   /** Lets the user choose a file on the browser's machine. */
@@ -52,7 +52,7 @@ export class FileCommands {
     input.addEventListener("change", () => {
       const file = input.files?.[0];
       if (!file) return;
-      if (file.size > MAX_BYTES) showNotice(strings.shell.refused, strings.shell.tooLarge(file.name));
+      if (file.size > MAX_FILE_BYTES) showNotice(strings.shell.refused, strings.shell.tooLarge(file.name));
       else void file.text().then((text) => this.sendRequest((discardsChanges) => this.state.load(file.name, text, discardsChanges)));
     });
     input.click();
@@ -65,9 +65,9 @@ export class FileCommands {
 
   saveAs(): void {
     const onCancelled = (): void => {
-      this.afterSaving = null;
+      this.onSaved = null;
     };
-    this.show(new FileDialog(this.state, "save", (path) => this.state.save(path), onCancelled));
+    this.openDialog(new FileDialog(this.state, "save", (path) => this.state.save(path), onCancelled));
   }
 
   download(): void {
@@ -80,7 +80,7 @@ export class FileCommands {
       texts.revert,
       [texts.revertQuestion],
       [
-        { label: texts.cancel, isMain: true },
+        { label: texts.cancel, isPrimary: true },
         {
           label: texts.revert,
           isDangerous: true,
@@ -93,7 +93,7 @@ export class FileCommands {
     ).open();
   }
 
-  private show(dialog: FileDialog): void {
+  private openDialog(dialog: FileDialog): void {
     this.dialog?.close();
     this.dialog = dialog;
     dialog.open();
@@ -117,7 +117,7 @@ export class FileCommands {
         this.askToReplace(texts.changedOnDisk, texts.changedOnDiskQuestion(refusal.path ?? ""), refusal.path);
         break;
       case null:
-        this.afterSaving = null;
+        this.onSaved = null;
         if (this.dialog?.showProblem(refusal.message) !== true) showNotice(texts.refused, refusal.message);
         break;
     }
@@ -138,9 +138,9 @@ export class FileCommands {
         { label: texts.discard, isDangerous: true, run: proceed },
         {
           label: texts.saveFirst,
-          isMain: true,
+          isPrimary: true,
           run: () => {
-            this.afterSaving = proceed;
+            this.onSaved = proceed;
             this.save();
             return undefined;
           },
@@ -155,7 +155,7 @@ export class FileCommands {
       title,
       [question],
       [
-        { label: texts.cancel, isMain: true },
+        { label: texts.cancel, isPrimary: true },
         {
           label: texts.replace,
           isDangerous: true,

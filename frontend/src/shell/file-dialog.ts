@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import type { Folder } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
@@ -29,7 +29,7 @@ export class FileDialog {
     this.nameField.setAttribute("aria-label", texts.fileName);
     this.nameField.spellcheck = false;
     if (kind === "save") this.nameField.value = state.fileName ?? `${texts.untitled}${EXTENSION}`;
-    this.upButton = button(texts.folderUp, () => this.requestFolder(this.folder?.parent ?? null), "tool framed", icon("up"));
+    this.upButton = createButton(texts.folderUp, () => this.requestFolder(this.folder?.parent ?? null), "tool framed", createIcon("up"));
     this.dialog = new Dialog(
       kind === "open" ? texts.openTitle : texts.saveTitle,
       [
@@ -40,13 +40,13 @@ export class FileDialog {
       ],
       [
         { label: texts.cancel },
-        { label: kind === "open" ? texts.openShort : texts.save, isMain: true, run: () => this.accept() },
+        { label: kind === "open" ? texts.openShort : texts.save, isPrimary: true, run: () => this.acceptPath() },
       ],
       "file-dialog",
     );
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.nameField.addEventListener("input", () => this.update());
-    this.stopListening = state.folders.on((folder) => this.show(folder));
+    this.stopListening = state.folders.on((folder) => this.showFolder(folder));
     this.dialog.element.addEventListener("close", () => {
       this.stopListening();
       if (!this.isAccepted) this.onCancelled();
@@ -76,7 +76,7 @@ export class FileDialog {
     this.state.requestFolder(path);
   }
 
-  private show(folder: Folder): void {
+  private showFolder(folder: Folder): void {
     this.folder = folder;
     this.folderLabel.replaceChildren(h("bdi", {}, folder.path));
     this.folderLabel.title = folder.path;
@@ -89,13 +89,13 @@ export class FileDialog {
     if (entries.length === 0) {
       this.list.append(h("li", { class: "empty", role: "option", aria: { disabled: "true" } }, strings.shell.emptyFolder));
     }
-    const [first] = entries;
-    if (first) first.tabIndex = 0;
+    const [firstEntry] = entries;
+    if (firstEntry) firstEntry.tabIndex = 0;
   }
 
   private createEntry(name: string, isFolder: boolean): HTMLLIElement {
-    const entry = h("li", { role: "option", tabIndex: -1 }, icon(isFolder ? "folder" : "file"), name);
-    const choose = (): void => {
+    const entry = h("li", { role: "option", tabIndex: -1 }, createIcon(isFolder ? "folder" : "file"), name);
+    const chooseEntry = (): void => {
       if (isFolder) this.requestFolder(joinPath(this.folder?.path ?? "", name));
       else {
         this.nameField.value = name;
@@ -103,10 +103,10 @@ export class FileDialog {
         for (const row of this.list.children) row.setAttribute("aria-selected", String(row === entry));
       }
     };
-    entry.addEventListener("click", choose);
+    entry.addEventListener("click", chooseEntry);
     if (!isFolder) {
       entry.addEventListener("dblclick", () => {
-        if (this.accept()) this.close();
+        if (this.acceptPath()) this.close();
       });
     }
     return entry;
@@ -127,7 +127,7 @@ export class FileDialog {
     this.dialog.isReady = this.nameField.value.trim() !== "";
   }
 
-  private accept(): boolean {
+  private acceptPath(): boolean {
     const name = this.nameField.value.trim();
     if (name === "") return false;
     const fileName = this.kind === "save" && !name.endsWith(EXTENSION) ? `${name}${EXTENSION}` : name;

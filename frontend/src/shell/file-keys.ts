@@ -1,5 +1,5 @@
 import type { ConfigurationState } from "../state/configuration";
-import { matches, SHORTCUTS } from "../widgets/shortcuts";
+import { matchesShortcut, SHORTCUTS } from "../widgets/shortcuts";
 import type { FileCommands } from "./file-commands";
 
 /** The part of the editor of source files that keys need. */
@@ -11,7 +11,7 @@ interface Sources {
 }
 
 /** The location of the focus, and the unsaved changes. */
-interface Situation {
+interface SaveContext {
   readonly focus: "editor" | "configuration" | "elsewhere";
   readonly isEditing: boolean;
   readonly hasUnsavedSources: boolean;
@@ -23,7 +23,7 @@ interface Situation {
  * elsewhere, the changed source files, otherwise the configuration. While source files are edited, the key does not ask
  * for the name of an unchanged configuration.
  */
-export function chooseSaved({ focus, isEditing, hasUnsavedSources, isConfigurationUnsaved }: Situation): "sources" | "configuration" {
+export function chooseSaveTarget({ focus, isEditing, hasUnsavedSources, isConfigurationUnsaved }: SaveContext): "sources" | "configuration" {
   if (focus === "configuration") return "configuration";
   return focus === "editor" || hasUnsavedSources || (isEditing && !isConfigurationUnsaved) ? "sources" : "configuration";
 }
@@ -38,7 +38,7 @@ export function bindFileKeys(configuration: ConfigurationState, files: FileComma
   const save = (target: Element | null): void => {
     const isInEditor = target?.matches(".source-editor *") === true;
     const isInPanel = panels.some((panel) => panel.contains(target));
-    const saveTarget = chooseSaved({
+    const saveTarget = chooseSaveTarget({
       focus: isInEditor ? "editor" : isInPanel ? "configuration" : "elsewhere",
       isEditing: sources.isEditing,
       hasUnsavedSources: sources.hasUnsaved,
@@ -48,19 +48,19 @@ export function bindFileKeys(configuration: ConfigurationState, files: FileComma
     else files.save();
   };
   const bindings = [
-    { shortcut: SHORTCUTS.save, run: save, editor: true },
+    { shortcut: SHORTCUTS.save, run: save, worksInEditor: true },
     { shortcut: SHORTCUTS.saveAs, run: () => files.saveAs() },
     { shortcut: SHORTCUTS.open, run: () => files.chooseFile() },
-    { shortcut: SHORTCUTS.undo, run: () => configuration.undo(), text: true },
-    { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), text: true },
-    { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), text: true },
+    { shortcut: SHORTCUTS.undo, run: () => configuration.undo(), isLeftToTextFields: true },
+    { shortcut: SHORTCUTS.redo, run: () => configuration.redo(), isLeftToTextFields: true },
+    { shortcut: SHORTCUTS.redoToo, run: () => configuration.redo(), isLeftToTextFields: true },
   ];
   const onKeyDown = (event: KeyboardEvent): void => {
     const target = event.target instanceof Element ? event.target : null;
-    const binding = bindings.find(({ shortcut }) => matches(event, shortcut));
+    const binding = bindings.find(({ shortcut }) => matchesShortcut(event, shortcut));
     if (!binding || target?.closest("dialog, .terminal-screen")) return;
-    if (binding.editor !== true && target?.closest(".source-editor")) return;
-    if (binding.text === true && target?.matches("input[type=text], textarea")) return;
+    if (binding.worksInEditor !== true && target?.closest(".source-editor")) return;
+    if (binding.isLeftToTextFields === true && target?.matches("input[type=text], textarea")) return;
     event.preventDefault();
     event.stopPropagation();
     binding.run(target);

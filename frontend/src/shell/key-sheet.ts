@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import { WORLD_KEYS } from "../panels/modeling/world-commands";
 import { FIT_KEY, translateToolName } from "../panels/over-scene/toolbar";
 import { TERMINAL_KEYS, formatTerminalKey } from "../panels/terminal/terminal-keys";
@@ -9,7 +9,7 @@ import type { ToolsState } from "../state/tools";
 import { strings } from "../strings";
 import { formatShortcut, SHORTCUTS } from "../widgets/shortcuts";
 
-type Row = readonly [keys: string, meaning: string];
+type KeyRow = readonly [keys: string, meaning: string];
 
 /** The sheet of all keys of the page, which `?` opens. */
 export class KeySheet {
@@ -25,7 +25,7 @@ export class KeySheet {
   private open(): void {
     const texts = strings.keys;
     const dialog = h("dialog", { class: "key-sheet", aria: { label: texts.title } });
-    const closeButton = button(texts.close, () => dialog.close(), "tool bare", icon("close"));
+    const closeButton = createButton(texts.close, () => dialog.close(), "tool bare", createIcon("close"));
     dialog.append(
       h("header", {}, h("strong", {}, texts.title), h("span", { class: "spacer" }), closeButton),
       h("div", { class: "key-columns" }, ...this.createSections().map(([title, rows, note]) => createSection(title, rows, note))),
@@ -42,10 +42,10 @@ export class KeySheet {
     dialog.showModal();
   }
 
-  private createSections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
+  private createSections(): (readonly [title: string, rows: readonly KeyRow[], note?: string])[] {
     const texts = strings.keys;
     const { shell, displays, modeling, terminal } = strings;
-    const tools = this.tools.tools.flatMap((tool): Row[] => {
+    const tools = this.tools.tools.flatMap((tool): KeyRow[] => {
       const entry = TOOLS.get(tool.cls);
       return entry ? [[entry.key.toUpperCase(), translateToolName(tool)]] : [];
     });
@@ -123,7 +123,7 @@ export class KeySheet {
   }
 }
 
-function createSection(title: string, rows: readonly Row[], note?: string): HTMLElement {
+function createSection(title: string, rows: readonly KeyRow[], note?: string): HTMLElement {
   const list = rows.flatMap(([keys, meaning]) => [h("dt", {}, h("kbd", {}, keys)), h("dd", {}, meaning)]);
   return h("section", {}, h("h2", {}, title), h("dl", {}, ...list), note === undefined ? null : h("p", { class: "hint" }, note));
 }

@@ -34,9 +34,9 @@ export class RecordingDrop {
       this.dropOverlay.hidden = true;
       if (!hasFiles(event) || !event.dataTransfer) return;
       event.preventDefault();
-      void readDroppedFiles(event.dataTransfer).then((recording) => this.accept(recording));
+      void readDroppedFiles(event.dataTransfer).then((recording) => this.openDropped(recording));
     });
-    session.recording.viewRequested.on(({ name, url }) => void this.open(name, 0, (upload) => upload.show(url)));
+    session.recording.viewRequested.on(({ name, url }) => void this.openPage(name, 0, (upload) => upload.openRecording(url)));
     session.connection.on("timeline", ({ live: isLive }) => this.returnToLive(isLive));
   }
 
@@ -48,12 +48,12 @@ export class RecordingDrop {
     input.accept = ".mcap,.db3,.yaml,.zstd";
     input.addEventListener("change", () => {
       const files = [...(input.files ?? [])].map((file) => ({ name: file.name, file }));
-      this.accept(findRecording(strings.recording.folder, files));
+      this.openDropped(findRecording(strings.recording.folder, files));
     });
     input.click();
   }
 
-  private accept(recording: DroppedRecording): void {
+  private openDropped(recording: DroppedRecording): void {
     const texts = strings.recording;
     if (this.isBusy) return;
     if (recording.files.length === 0) showNotice(texts.noRecording, texts.noRecordingHint(recording.name));
@@ -62,31 +62,31 @@ export class RecordingDrop {
 
   private send({ name, files }: DroppedRecording): Promise<void> {
     const totalBytes = files.reduce((sum, { file }) => sum + file.size, 0);
-    return this.open(name, totalBytes, (upload) => upload.send(name, files));
+    return this.openPage(name, totalBytes, (upload) => upload.send(name, files));
   }
 
   /**
    * Opens the page of a recording as soon as the server shows it. Until then, a dialog shows the progress.
    */
-  private async open(name: string, totalBytes: number, requestRecording: (upload: Upload) => Promise<string | null>): Promise<void> {
+  private async openPage(name: string, totalBytes: number, requestRecording: (upload: Upload) => Promise<string | null>): Promise<void> {
     const texts = strings.recording;
     if (this.isBusy) return;
-    const bar = h("progress", { class: "wide", aria: { label: texts.sending(name) } });
-    const text = h("p", { role: "status" });
-    const show = (sentBytes: number): void => {
-      bar.max = Math.max(1, totalBytes);
-      if (sentBytes < totalBytes) bar.value = sentBytes;
-      else bar.removeAttribute("value");
-      text.textContent = sentBytes < totalBytes ? formatBytesOfTotal(sentBytes, totalBytes) : texts.opening;
+    const progressBar = h("progress", { class: "wide", aria: { label: texts.sending(name) } });
+    const progressText = h("p", { role: "status" });
+    const showProgress = (sentBytes: number): void => {
+      progressBar.max = Math.max(1, totalBytes);
+      if (sentBytes < totalBytes) progressBar.value = sentBytes;
+      else progressBar.removeAttribute("value");
+      progressText.textContent = sentBytes < totalBytes ? formatBytesOfTotal(sentBytes, totalBytes) : texts.opening;
     };
-    const upload = new Upload(document.baseURI, this.tokens, language, show);
+    const upload = new Upload(document.baseURI, this.tokens, language, showProgress);
     let isFinished = false;
-    const dialog = new Dialog(texts.sending(name), [bar, text], [{ label: strings.shell.cancel, isMain: true }]);
+    const dialog = new Dialog(texts.sending(name), [progressBar, progressText], [{ label: strings.shell.cancel, isPrimary: true }]);
     dialog.element.addEventListener("close", () => {
       if (!isFinished) upload.cancel();
     });
     this.isBusy = true;
-    show(0);
+    showProgress(0);
     dialog.open();
     try {
       const recording = await requestRecording(upload);

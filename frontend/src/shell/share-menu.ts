@@ -1,21 +1,21 @@
 import type { Tokens } from "../connection/tokens";
-import { button, h } from "../dom";
+import { createButton, h } from "../dom";
 import type { Stage } from "../scene/stage";
-import { formatTime, VideoRecorder } from "../scene/video";
+import { formatDuration, VideoRecorder } from "../scene/video";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { copyText } from "../widgets/copy-text";
 import { showNotice } from "../widgets/dialog";
 import type { MenuEntry } from "../widgets/menu";
-import { saveBlob, saveFrom } from "../widgets/save-file";
+import { saveBlob, saveFromUrl } from "../widgets/save-file";
 
-const SCALES = [1, 2, 4] as const;
+const SCREENSHOT_SCALES = [1, 2, 4] as const;
 
 /** The menu of exports: images and videos of the scene, and the robot as a file. */
 export class ShareMenu {
   /** The button shown while a video is recorded: it shows the duration, and a click stops the recording. */
   readonly element: HTMLElement;
-  private readonly video: VideoRecorder | null;
+  private readonly recorder: VideoRecorder | null;
   private readonly stopButton: HTMLButtonElement;
 
   constructor(
@@ -23,35 +23,35 @@ export class ShareMenu {
     private readonly stage: Stage | null,
     private readonly tokens: Tokens,
   ) {
-    this.video = stage && VideoRecorder.isPossible ? createRecorder(stage, (video) => this.saveVideo(video)) : null;
-    this.stopButton = button(strings.sharing.recording, () => this.video?.stop(), "tool recording", "");
+    this.recorder = stage && VideoRecorder.isPossible ? createRecorder(stage, (recorder) => this.saveVideo(recorder)) : null;
+    this.stopButton = createButton(strings.sharing.recording, () => this.recorder?.stop(), "tool recording", "");
     this.element = h("span", { class: "recorder", role: "status" }, this.stopButton);
-    this.video?.changed.on(() => this.showTime());
-    this.showTime();
-    session.connection.on("export_ready", ({ url, name, outside_files: outside }) => {
-      saveFrom(name, new URL(url, document.baseURI).href);
-      if (outside.length > 0) showNotice(strings.sharing.exportOutside, strings.sharing.exportOutsideHint, outside);
+    this.recorder?.changed.on(() => this.showDuration());
+    this.showDuration();
+    session.connection.on("export_ready", ({ url, name, outside_files: outsideFiles }) => {
+      saveFromUrl(name, new URL(url, document.baseURI).href);
+      if (outsideFiles.length > 0) showNotice(strings.sharing.exportOutside, strings.sharing.exportOutsideHint, outsideFiles);
     });
     session.connection.on("export_failed", ({ message }) => showNotice(strings.sharing.exportFailed, message));
   }
 
   createEntries(): MenuEntry[] {
     const texts = strings.sharing;
-    const { stage, video } = this;
-    const isRecording = video?.isRecording ?? false;
+    const { stage, recorder } = this;
+    const isRecording = recorder?.isRecording ?? false;
     return [
-      ...SCALES.map((scale): MenuEntry => ({
+      ...SCREENSHOT_SCALES.map((scale): MenuEntry => ({
         label: scale === 1 ? texts.screenshot : texts.screenshotScaled(scale),
         icon: "camera",
         isDisabled: stage === null,
         run: () => void this.saveImage(scale),
       })),
       {
-        label: isRecording ? texts.stopVideo(formatTime(video?.seconds ?? 0)) : texts.startVideo,
+        label: isRecording ? texts.stopVideo(formatDuration(recorder?.seconds ?? 0)) : texts.startVideo,
         icon: "record",
-        isDisabled: video === null,
+        isDisabled: recorder === null,
         hasLineAbove: true,
-        run: () => (isRecording ? video?.stop() : video?.start()),
+        run: () => (isRecording ? recorder?.stop() : recorder?.start()),
       },
       { label: texts.exportHtml, icon: "download", hasLineAbove: true, isDisabled: this.hasNoRobot, run: () => this.requestExport("html") },
       { label: texts.exportGlb, icon: "download", isDisabled: this.hasNoRobot, run: () => this.requestExport("glb") },
@@ -68,8 +68,8 @@ export class ShareMenu {
     if (image) saveBlob(this.createFileName("png"), image);
   }
 
-  private saveVideo(video: Blob): void {
-    saveBlob(this.createFileName(video.type.startsWith("video/mp4") ? "mp4" : "webm"), video);
+  private saveVideo(recorder: Blob): void {
+    saveBlob(this.createFileName(recorder.type.startsWith("video/mp4") ? "mp4" : "webm"), recorder);
   }
 
   private requestExport(format: "html" | "glb"): void {
@@ -84,11 +84,11 @@ export class ShareMenu {
     else showNotice(texts.linkHere, link);
   }
 
-  private showTime(): void {
-    const isRecording = this.video?.isRecording ?? false;
+  private showDuration(): void {
+    const isRecording = this.recorder?.isRecording ?? false;
     this.element.hidden = !isRecording;
-    const label = strings.sharing.stopVideo(formatTime(this.video?.seconds ?? 0));
-    this.stopButton.textContent = `● ${formatTime(this.video?.seconds ?? 0)}`;
+    const label = strings.sharing.stopVideo(formatDuration(this.recorder?.seconds ?? 0));
+    this.stopButton.textContent = `● ${formatDuration(this.recorder?.seconds ?? 0)}`;
     this.stopButton.title = label;
     this.stopButton.setAttribute("aria-label", label);
   }
@@ -101,6 +101,6 @@ export class ShareMenu {
   }
 }
 
-function createRecorder({ viewport, loop }: Stage, onFinished: (video: Blob) => void): VideoRecorder {
+function createRecorder({ viewport, loop }: Stage, onFinished: (recorder: Blob) => void): VideoRecorder {
   return new VideoRecorder(viewport.canvas, () => loop.invalidate(), onFinished);
 }

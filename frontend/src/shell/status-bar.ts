@@ -3,16 +3,16 @@ import type { Stage } from "../scene/stage";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 
-const REFRESH_MS = 500;
+const REFRESH_INTERVAL_MS = 500;
 
 /** The bar in the footer with the connection, the fixed frame, the robot and the frame rate. */
 export class StatusBar {
   readonly element: HTMLElement;
-  private readonly connection = h("span", { class: "connection", role: "status" });
-  private readonly fixedFrame = h("span", { class: "status-value" });
-  private readonly robot = h("span", { class: "status-item" });
-  private readonly hint = h("span", { class: "status-item mouse" });
-  private readonly rate = h("span", { class: "status-item rate" });
+  private readonly connectionText = h("span", { class: "connection", role: "status" });
+  private readonly fixedFrameText = h("span", { class: "status-value" });
+  private readonly robotText = h("span", { class: "status-item" });
+  private readonly hintText = h("span", { class: "status-item mouse" });
+  private readonly rateText = h("span", { class: "status-item rate" });
 
   constructor(
     private readonly session: Session,
@@ -21,17 +21,17 @@ export class StatusBar {
     this.element = h(
       "footer",
       { class: "status-bar" },
-      this.connection,
-      h("span", { class: "status-item" }, h("span", { class: "status-name" }, strings.status.fixedFrame), this.fixedFrame),
-      this.robot,
+      this.connectionText,
+      h("span", { class: "status-item" }, h("span", { class: "status-name" }, strings.status.fixedFrame), this.fixedFrameText),
+      this.robotText,
       h("span", { class: "spacer" }),
-      this.hint,
+      this.hintText,
       h("span", { class: "spacer" }),
-      this.rate,
+      this.rateText,
     );
     const showHint = (text: string): void => {
-      this.hint.textContent = text;
-      this.hint.title = text;
+      this.hintText.textContent = text;
+      this.hintText.title = text;
     };
     session.tools.hintChanged.on(showHint);
     showHint(session.tools.hint);
@@ -39,17 +39,17 @@ export class StatusBar {
     session.displays.treeChanged.on(() => this.update());
     session.displays.valueChanged.on(() => this.update());
     session.robotChanged.on(() => this.update());
-    setInterval(() => this.updateRate(), REFRESH_MS);
+    setInterval(() => this.updateRate(), REFRESH_INTERVAL_MS);
     this.update();
     this.updateRate();
   }
 
   private update(): void {
     const { connection, displays, robot } = this.session;
-    this.connection.textContent = strings.connection[connection.state];
-    this.connection.dataset["state"] = connection.state;
-    this.fixedFrame.textContent = displays.fixedFrame;
-    this.robot.replaceChildren(
+    this.connectionText.textContent = strings.connection[connection.state];
+    this.connectionText.dataset["state"] = connection.state;
+    this.fixedFrameText.textContent = displays.fixedFrame;
+    this.robotText.replaceChildren(
       h("span", { class: "status-value" }, robot ? robot.name : strings.status.noRobot),
       robot ? h("span", { class: "status-name" }, strings.status.links(robot.links.length)) : "",
     );
@@ -57,12 +57,12 @@ export class StatusBar {
 
   private updateRate(): void {
     if (!this.stage) return;
-    const rate = this.stage.loop.framesPerSecond(performance.now());
+    const rate = this.stage.loop.computeFrameRate(performance.now());
     const { drawingPace } = this.session;
     const fps = rate === null ? strings.status.idle : strings.status.fps(rate);
     const text = rate !== null && drawingPace.isSlow ? strings.status.slow(fps) : fps;
-    if (this.rate.textContent !== text) this.rate.textContent = text;
+    if (this.rateText.textContent !== text) this.rateText.textContent = text;
     const frameCount = strings.status.frames(this.stage.loop.framesDrawn);
-    this.rate.title = drawingPace.software === null ? frameCount : `${frameCount}. ${strings.sharing.software(drawingPace.software)}`;
+    this.rateText.title = drawingPace.softwareRenderer === null ? frameCount : `${frameCount}. ${strings.sharing.software(drawingPace.softwareRenderer)}`;
   }
 }

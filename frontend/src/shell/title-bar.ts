@@ -1,5 +1,5 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import type { Dock } from "../panels/dock/dock";
 import type { Session } from "../state/session";
 import { THEME_CHOICES, type ThemeState } from "../state/theme";
@@ -15,8 +15,8 @@ import type { ShareMenu } from "./share-menu";
 /** The head of the page: menus, the configuration file, and commands for the whole page. */
 export class TitleBar {
   readonly element: HTMLElement;
-  private readonly title = h("span", { class: "document-title" });
-  private readonly file = h("span", { class: "file-name" });
+  private readonly titleText = h("span", { class: "document-title" });
+  private readonly fileText = h("span", { class: "file-name" });
   private readonly undoButton: HTMLButtonElement;
   private readonly redoButton: HTMLButtonElement;
   private programTitle = "";
@@ -31,8 +31,8 @@ export class TitleBar {
   ) {
     const texts = strings.shell;
     const { configuration } = session;
-    this.undoButton = button(texts.undo, () => configuration.undo(), "tool bare", icon("undo"));
-    this.redoButton = button(texts.redo, () => configuration.redo(), "tool bare", icon("redo"));
+    this.undoButton = createButton(texts.undo, () => configuration.undo(), "tool bare", createIcon("undo"));
+    this.redoButton = createButton(texts.redo, () => configuration.redo(), "tool bare", createIcon("redo"));
     const menus = [
       createMenuButton(texts.file, () => this.createFileMenu()),
       createMenuButton(texts.panels, () => this.createPanelsMenu()),
@@ -47,17 +47,17 @@ export class TitleBar {
       h("nav", { class: "menu-bar", aria: { label: texts.menu } }, ...menus),
       this.undoButton,
       this.redoButton,
-      this.file,
-      this.title,
+      this.fileText,
+      this.titleText,
       h("span", { class: "spacer" }),
       share.element,
       this.createOwnSwitch(),
       createThemeButton(theme),
-      button(
+      createButton(
         texts.languageHint,
         changeLanguage,
         "tool language-button",
-        icon("language"),
+        createIcon("language"),
         texts.language,
       ),
     );
@@ -74,9 +74,9 @@ export class TitleBar {
     const texts = strings.shell;
     const { current, fileName } = this.session.configuration;
     const name = fileName ?? texts.untitled;
-    this.file.replaceChildren(name, current.unsaved ? h("span", { class: "unsaved", title: texts.unsaved }, "●") : "");
-    this.file.title = `${current.path ?? texts.untitled}${current.unsaved ? ` (${texts.unsaved})` : ""}`;
-    this.title.textContent = this.programTitle;
+    this.fileText.replaceChildren(name, current.unsaved ? h("span", { class: "unsaved", title: texts.unsaved }, "●") : "");
+    this.fileText.title = `${current.path ?? texts.untitled}${current.unsaved ? ` (${texts.unsaved})` : ""}`;
+    this.titleText.textContent = this.programTitle;
     document.title = `${current.unsaved ? "● " : ""}${this.programTitle || name} - Linkwright`;
     this.undoButton.disabled = current.undo === null;
     this.redoButton.disabled = current.redo === null;
@@ -89,7 +89,7 @@ export class TitleBar {
     const { files } = this;
     const { current } = this.session.configuration;
     return [
-      { label: texts.newFile, icon: "file", run: () => files.begin() },
+      { label: texts.newFile, icon: "file", run: () => files.createFile() },
       { label: texts.open, icon: "open", keys: formatShortcut(SHORTCUTS.open), run: () => files.chooseFile() },
       { label: texts.openLocal, icon: "upload", run: () => files.chooseLocal() },
       { label: strings.recording.open, hint: strings.recording.openFileHint, icon: "play", run: () => this.recordings.choose() },
@@ -103,7 +103,7 @@ export class TitleBar {
         run: () => files.revert(),
       },
       ...current.recent.map((path, index) => ({
-        label: shorten(path),
+        label: shortenLongPath(path),
         hint: path,
         icon: "recent" as const,
         hasLineAbove: index === 0,
@@ -134,8 +134,8 @@ export class TitleBar {
     const choose = (isOwn: boolean) => (): void => {
       if (isOwn !== configuration.current.is_own) location.assign(addressFor(location.href, isOwn));
     };
-    const sharedButton = button(texts.sharedDisplays, choose(false), "", icon("shared"), texts.shared);
-    const ownButton = button(texts.ownHint, choose(true), "", icon("own"), texts.own);
+    const sharedButton = createButton(texts.sharedDisplays, choose(false), "", createIcon("shared"), texts.shared);
+    const ownButton = createButton(texts.ownHint, choose(true), "", createIcon("own"), texts.own);
     const show = (): void => {
       for (const [element, isPressed] of [
         [sharedButton, !configuration.current.is_own],
@@ -157,7 +157,7 @@ function setLabel(element: HTMLButtonElement, name: string, keys: string): void 
 }
 
 function createMenuButton(label: string, createEntries: () => MenuEntry[]): HTMLButtonElement {
-  const element = button(label, () => openMenu(element, createEntries()), "tool menu-button", label);
+  const element = createButton(label, () => openMenu(element, createEntries()), "tool menu-button", label);
   element.setAttribute("aria-haspopup", "menu");
   element.setAttribute("aria-expanded", "false");
   element.removeAttribute("title");
@@ -177,7 +177,7 @@ function bindArrowKeys(menus: readonly HTMLButtonElement[]): void {
   }
 }
 
-function shorten(path: string): string {
+function shortenLongPath(path: string): string {
   return path.length <= 60 ? path : `…${path.slice(-58)}`;
 }
 
@@ -192,9 +192,9 @@ function createThemeButton(theme: ThemeState): HTMLButtonElement {
     }));
     openMenu(element, entries);
   };
-  const element = button(texts.theme, choose, "tool bare theme-button", icon("system"));
+  const element = createButton(texts.theme, choose, "tool bare theme-button", createIcon("system"));
   element.setAttribute("aria-haspopup", "menu");
-  const show = (): void => element.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
+  const show = (): void => element.replaceChildren(createIcon(theme.theme === "light" ? "light" : "dark"));
   theme.changed.on(show);
   show();
   return element;

@@ -1,15 +1,15 @@
 import type { Connection } from "../connection/connection";
 import { extractToken, type Tokens } from "../connection/tokens";
-import { button, h } from "../dom";
+import { createButton, h } from "../dom";
 import { strings } from "../strings";
 import { createLogo } from "../widgets/logo";
 
 /** The screen over everything while the page has no valid token: where to find the token, and a field for it. */
 export class TokenScreen {
   readonly element: HTMLElement;
-  private readonly field = h("input", { class: "field wide", aria: { label: strings.door.label } });
+  private readonly tokenField = h("input", { class: "field wide", aria: { label: strings.door.label } });
   private readonly problem = h("p", { class: "problem", role: "alert" });
-  private wasOpen = false;
+  private wasConnected = false;
 
   constructor(
     private readonly connection: Connection,
@@ -17,10 +17,10 @@ export class TokenScreen {
     private readonly page: HTMLElement,
   ) {
     const texts = strings.door;
-    this.field.placeholder = `${location.origin}/?token=…`;
-    this.field.spellcheck = false;
-    this.field.autocomplete = "off";
-    const form = h("form", {}, this.field, button(texts.open, () => this.submit(), "tool framed primary", texts.open));
+    this.tokenField.placeholder = `${location.origin}/?token=…`;
+    this.tokenField.spellcheck = false;
+    this.tokenField.autocomplete = "off";
+    const form = h("form", {}, this.tokenField, createButton(texts.open, () => this.submit(), "tool framed primary", texts.open));
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       this.submit();
@@ -47,11 +47,11 @@ export class TokenScreen {
   private update(): void {
     const { state } = this.connection;
     if (state === "connected") {
-      this.wasOpen = true;
+      this.wasConnected = true;
       this.show(false);
     }
     // A page that was connected earlier continues to show its content, with a notice.
-    if (state !== "refused" || this.wasOpen) return;
+    if (state !== "refused" || this.wasConnected) return;
     if (this.tokens.current !== null) this.problem.textContent = strings.door.unknown;
     this.show(true);
   }
@@ -60,14 +60,14 @@ export class TokenScreen {
     this.page.inert = isShown;
     if (isShown !== this.element.hidden) return;
     this.element.hidden = !isShown;
-    if (isShown) this.field.focus();
+    if (isShown) this.tokenField.focus();
   }
 
   private submit(): void {
-    const token = extractToken(this.field.value);
+    const token = extractToken(this.tokenField.value);
     this.problem.textContent = token === null ? strings.door.noToken : "";
     if (token === null) {
-      this.field.focus();
+      this.tokenField.focus();
       return;
     }
     this.connection.connectWith(token);

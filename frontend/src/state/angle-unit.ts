@@ -3,8 +3,8 @@ import type { TextStorage } from "../storage";
 
 export type AngleUnit = "rad" | "deg";
 
-const KEY = "linkwright.angle-unit";
-const DEGREES = 180 / Math.PI;
+const STORAGE_KEY = "linkwright.angle-unit";
+const DEGREES_PER_RADIAN = 180 / Math.PI;
 
 /** The unit in which angles are shown and typed, stored by the browser. */
 export class AngleUnits {
@@ -12,7 +12,7 @@ export class AngleUnits {
   private unit: AngleUnit;
 
   constructor(private readonly storage: TextStorage) {
-    this.unit = storage.getItem(KEY) === "deg" ? "deg" : "rad";
+    this.unit = storage.getItem(STORAGE_KEY) === "deg" ? "deg" : "rad";
   }
 
   get current(): AngleUnit {
@@ -21,12 +21,12 @@ export class AngleUnits {
 
   set current(unit: AngleUnit) {
     this.unit = unit;
-    this.storage.setItem(KEY, unit);
+    this.storage.setItem(STORAGE_KEY, unit);
     this.changed.emit();
   }
 
   /** Returns the factor from a joint's position to the displayed value: 1 for meters. */
-  scale(kind: string): number {
-    return kind !== "prismatic" && this.unit === "deg" ? DEGREES : 1;
+  scaleOf(kind: string): number {
+    return kind !== "prismatic" && this.unit === "deg" ? DEGREES_PER_RADIAN : 1;
   }
 }

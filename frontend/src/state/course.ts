@@ -13,19 +13,19 @@ export class CourseState {
   course: Course | null = null;
   step: CourseStep | null = null;
   checks: StepChecks | null = null;
-  /** Emitted with the files of the course's state before the shown step, after `askCatchUp`. */
+  /** Emitted with the files of the course's state before the shown step, after `requestCatchUp`. */
   readonly catchUpAnswered = new Signal<CatchUpFiles>();
   /** Why the last request was not carried out. */
   problem: CourseProblem | null = null;
   /** Whether the connection is new, and the server has not sent a course yet. */
-  private isUnknown = true;
+  private isCourseUnknown = true;
   /** Whether this page has asked for the files to catch up; all pages receive the answer. */
-  private hasAskedCatchUp = false;
+  private hasRequestedCatchUp = false;
 
   constructor(private readonly connection: Connection) {
-    connection.on("hello", () => (this.isUnknown = true));
+    connection.on("hello", () => (this.isCourseUnknown = true));
     connection.on("course", (course) => {
-      this.isUnknown = false;
+      this.isCourseUnknown = false;
       const isNew = this.course === null;
       this.course = course;
       if (isNew) this.availabilityChanged.emit();
@@ -33,12 +33,12 @@ export class CourseState {
     });
     // The last message to a page that opens: a program without a course has sent no `course` before it.
     connection.on("frame_table", () => {
-      if (this.isUnknown && this.course !== null) {
+      if (this.isCourseUnknown && this.course !== null) {
         this.course = this.step = this.checks = this.problem = null;
         this.availabilityChanged.emit();
         this.changed.emit();
       }
-      this.isUnknown = false;
+      this.isCourseUnknown = false;
     });
     connection.on("course_step", (step) => {
       this.step = step;
@@ -49,9 +49,9 @@ export class CourseState {
       this.changed.emit();
     });
     connection.on("catch_up_files", (files) => {
-      const isAnswer = this.hasAskedCatchUp && files.address === this.step?.address;
-      this.hasAskedCatchUp = false;
-      if (isAnswer) this.catchUpAnswered.emit(files);
+      const isRequested = this.hasRequestedCatchUp && files.address === this.step?.address;
+      this.hasRequestedCatchUp = false;
+      if (isRequested) this.catchUpAnswered.emit(files);
     });
     connection.on("course_problem", (problem) => {
       this.problem = problem.message === "" ? null : problem;
@@ -96,7 +96,7 @@ export class CourseState {
   }
 
   /** Opens the step that is `count` steps after the shown one, if there is one. */
-  move(count: number): void {
+  moveBy(count: number): void {
     const step = this.stepAt(count);
     if (step) this.open(step.address);
   }
@@ -115,7 +115,7 @@ export class CourseState {
 
   /** Requests the files of the course's state before the shown step. */
   requestCatchUp(): void {
-    this.hasAskedCatchUp = true;
+    this.hasRequestedCatchUp = true;
     this.connection.send({ type: "request_catch_up" });
   }
 

@@ -8,7 +8,7 @@ export interface ElementName {
 }
 
 /** The key of the expanded text among the files. */
-export const EXPANDED = "";
+export const EXPANDED_TEXT_KEY = "";
 
 /** A description as a tree, with the places where it is written. */
 export class DescriptionModel {
@@ -39,11 +39,11 @@ export class DescriptionModel {
   }
 
   /** Returns the child joints of a link, sorted by name as in urdfdom. */
-  jointsBelow(link: string): readonly JointDetails[] {
+  childJointsOf(link: string): readonly JointDetails[] {
     return this.jointsByParent.get(link) ?? [];
   }
 
-  jointAbove(link: string): JointDetails | undefined {
+  parentJointOf(link: string): JointDetails | undefined {
     const name = this.links.get(link)?.parent_joint;
     return name === undefined || name === null ? undefined : this.joints.get(name);
   }
@@ -57,7 +57,7 @@ export class DescriptionModel {
     return Math.max(0, ...this.depths.values());
   }
 
-  placesOf(element: ElementName): Written | undefined {
+  sourceOf(element: ElementName): Written | undefined {
     const elements: ReadonlyMap<string, { written: Written }> = element.kind === "link" ? this.links : this.joints;
     return elements.get(element.name)?.written;
   }
@@ -77,7 +77,7 @@ export class DescriptionModel {
       const [link, depth] = next;
       if (this.depths.has(link)) continue;
       this.depths.set(link, depth);
-      for (const joint of this.jointsBelow(link)) stack.push([joint.child, depth + 1]);
+      for (const joint of this.childJointsOf(link)) stack.push([joint.child, depth + 1]);
     }
   }
 

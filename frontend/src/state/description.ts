@@ -32,8 +32,8 @@ export class DescriptionState {
   private readonly findings = new Map<string, InertiaFindings>();
   /** The texts that have arrived; undefined while a request is pending, null if the file does not exist. */
   private readonly texts = new Map<string, string | null | undefined>();
-  private modelHolders = 0;
-  private findingHolders = 0;
+  private modelHolderCount = 0;
+  private findingHolderCount = 0;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => this.revisions.clear());
@@ -43,7 +43,7 @@ export class DescriptionState {
         for (const display of entries.keys()) if (!displayIds.has(display)) entries.delete(display);
       }
     });
-    connection.on("description_changed", (message) => this.onChanged(message));
+    connection.on("description_changed", (message) => this.onDescriptionChanged(message));
     connection.on("description", (message) => {
       const model = new DescriptionModel(message);
       this.models.set(message.display, model);
@@ -63,24 +63,24 @@ export class DescriptionState {
 
   /** Keeps the descriptions of all displays up to date until the returned function is called. */
   hold(): () => void {
-    this.modelHolders += 1;
-    if (this.modelHolders === 1) {
+    this.modelHolderCount += 1;
+    if (this.modelHolderCount === 1) {
       for (const [display, revision] of this.revisions) {
         if (this.models.get(display)?.description.revision !== revision) this.request("request_description", display);
       }
     }
-    return runOnce(() => (this.modelHolders -= 1));
+    return runOnce(() => (this.modelHolderCount -= 1));
   }
 
   /** Keeps the findings about masses up to date until the returned function is called. */
   holdFindings(): () => void {
-    this.findingHolders += 1;
-    if (this.findingHolders === 1) {
+    this.findingHolderCount += 1;
+    if (this.findingHolderCount === 1) {
       for (const [display, revision] of this.revisions) {
         if (this.findings.get(display)?.revision !== revision) this.request("request_inertia", display);
       }
     }
-    return runOnce(() => (this.findingHolders -= 1));
+    return runOnce(() => (this.findingHolderCount -= 1));
   }
 
   /** Returns the description of a display, if it has arrived; it may be slightly out of date. */
@@ -102,13 +102,13 @@ export class DescriptionState {
     return this.texts.get(key);
   }
 
-  private onChanged({ display, revision, links, joints }: DescriptionChanged): void {
+  private onDescriptionChanged({ display, revision, links, joints }: DescriptionChanged): void {
     const isNew = this.revisions.get(display) !== revision;
     this.revisions.set(display, revision);
     if (isNew) {
       this.forgetTexts();
-      if (this.modelHolders > 0) this.request("request_description", display);
-      if (this.findingHolders > 0) this.request("request_inertia", display);
+      if (this.modelHolderCount > 0) this.request("request_description", display);
+      if (this.findingHolderCount > 0) this.request("request_inertia", display);
     }
     if (links.length + joints.length > 0) this.edited.emit({ display, links, joints });
   }

@@ -22,18 +22,18 @@ export interface Diagram {
   readonly height: number;
 }
 
-const BOX_PX = 26;
-const ELLIPSE_PX = 30;
-const GAP_PX = 22;
+const BOX_HEIGHT_PX = 26;
+const ELLIPSE_HEIGHT_PX = 30;
+const SIBLING_GAP_PX = 22;
 const LEVEL_GAP_PX = 26;
-const ORIGIN_PX = 34;
+const ORIGIN_HEIGHT_PX = 34;
 
-interface Sized extends TreeNode {
+interface SizedNode extends TreeNode {
   readonly element: ElementName;
   readonly boxWidth: number;
   readonly boxHeight: number;
   readonly origin: readonly string[];
-  readonly children: readonly Sized[];
+  readonly children: readonly SizedNode[];
 }
 
 /**
@@ -41,21 +41,21 @@ interface Sized extends TreeNode {
  *
  * @param measure - returns the width of a text, px.
  */
-export function layOut(model: DescriptionModel, showsOrigins: boolean, measure: (text: string) => number): Diagram {
-  const size = (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]): Sized => {
+export function layOutDiagram(model: DescriptionModel, showsOrigins: boolean, measure: (text: string) => number): Diagram {
+  const sizeNode = (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly SizedNode[]): SizedNode => {
     const boxWidth = measure(name) + (kind === "link" ? 20 : 34);
-    const boxHeight = kind === "link" ? BOX_PX : ELLIPSE_PX;
+    const boxHeight = kind === "link" ? BOX_HEIGHT_PX : ELLIPSE_HEIGHT_PX;
     const width = Math.max(boxWidth, ...origin.map(measure));
-    const height = boxHeight + (origin.length > 0 ? ORIGIN_PX : 0);
+    const height = boxHeight + (origin.length > 0 ? ORIGIN_HEIGHT_PX : 0);
     const element = { display: model.display, kind, name };
     return { id: `${kind} ${name}`, element, width, height, boxWidth, boxHeight, origin, children };
   };
-  const tree = layOutTree(buildTree(model, showsOrigins, size), GAP_PX, LEVEL_GAP_PX);
+  const tree = layOutTree(buildTree(model, showsOrigins, sizeNode), SIBLING_GAP_PX, LEVEL_GAP_PX);
   const diagramNodes = new Map<TreeNode, DiagramNode>();
   const nodes = tree.nodes.map(({ node, x, y, parent }) => {
-    const { element, boxWidth, boxHeight, origin } = node as Sized;
+    const { element, boxWidth, boxHeight, origin } = node as SizedNode;
     const parentNode = (parent && diagramNodes.get(parent.node)) ?? null;
-    const originOffset = origin.length > 0 ? ORIGIN_PX / 2 : 0;
+    const originOffset = origin.length > 0 ? ORIGIN_HEIGHT_PX / 2 : 0;
     const diagramNode = { element, x, y: y + originOffset, width: boxWidth, height: boxHeight, origin, parent: parentNode };
     diagramNodes.set(node, diagramNode);
     return diagramNode;
@@ -67,26 +67,26 @@ export function layOut(model: DescriptionModel, showsOrigins: boolean, measure: 
 function buildTree(
   model: DescriptionModel,
   showsOrigins: boolean,
-  size: (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly Sized[]) => Sized,
-): Sized {
-  const order: string[] = [];
+  sizeNode: (kind: ElementName["kind"], name: string, origin: readonly string[], children: readonly SizedNode[]) => SizedNode,
+): SizedNode {
+  const linksTopDown: string[] = [];
   const visited = new Set<string>();
   const stack = [model.description.root];
   for (let link = stack.pop(); link !== undefined; link = stack.pop()) {
     if (visited.has(link)) continue;
     visited.add(link);
-    order.push(link);
-    for (const joint of model.jointsBelow(link)) stack.push(joint.child);
+    linksTopDown.push(link);
+    for (const joint of model.childJointsOf(link)) stack.push(joint.child);
   }
-  const sizedNodes = new Map<string, Sized>();
-  for (const link of order.reverse()) {
-    const joints = model.jointsBelow(link).flatMap((joint) => {
+  const sizedNodes = new Map<string, SizedNode>();
+  for (const link of linksTopDown.reverse()) {
+    const joints = model.childJointsOf(link).flatMap((joint) => {
       const child = sizedNodes.get(joint.child);
-      return child ? [size("joint", joint.name, showsOrigins ? formatOrigin(joint) : [], [child])] : [];
+      return child ? [sizeNode("joint", joint.name, showsOrigins ? formatOrigin(joint) : [], [child])] : [];
     });
-    sizedNodes.set(link, size("link", link, [], joints));
+    sizedNodes.set(link, sizeNode("link", link, [], joints));
   }
-  return sizedNodes.get(model.description.root) ?? size("link", model.description.root, [], []);
+  return sizedNodes.get(model.description.root) ?? sizeNode("link", model.description.root, [], []);
 }
 
 /**

@@ -2,7 +2,7 @@ import type { Display, Property, PropertyValue, StatusLevel, StatusRow, Tree } f
 import { Signal } from "../signal";
 import { PropertyNode, PropertyRows } from "./properties";
 
-const GROUP = "rviz_common/Group";
+const GROUP_CLASS = "rviz_common/Group";
 
 /** The level shown for a row: the server's, or "loading" while its data is being loaded. */
 export type ShownLevel = StatusLevel | "loading";
@@ -51,7 +51,7 @@ export class DisplayState {
 
   /** Whether it is a group of displays. */
   get isGroup(): boolean {
-    return this.cls === GROUP;
+    return this.cls === GROUP_CLASS;
   }
 
   /** Whether it is in a group, at any depth. */
@@ -95,20 +95,20 @@ export class DisplaysState {
   isKnown = false;
   /** Returns whether something of a display is still loading, such as its meshes; set by the scene. */
   isLoading: (display: DisplayState) => boolean = () => false;
-  private owners = new Map<string, { node: PropertyNode; display: DisplayState | null }>();
+  private rowOwners = new Map<string, { node: PropertyNode; display: DisplayState | null }>();
 
   setTree(tree: Tree): void {
     const displaysById = new Map(this.displays.map((display) => [display.id, display]));
-    const next = tree.displays.map((display) => {
+    const updatedDisplays = tree.displays.map((display) => {
       const existing = displaysById.get(display.id);
       if (existing?.cls !== display.cls) return new DisplayState(display);
       existing.update(display);
       return existing;
     });
-    this.displays.splice(0, this.displays.length, ...next);
+    this.displays.splice(0, this.displays.length, ...updatedDisplays);
     for (const [index, { group }] of tree.displays.entries()) {
-      const display = next[index];
-      if (display) display.group = (group !== null && next.find((candidate) => candidate.id === group)) || null;
+      const display = updatedDisplays[index];
+      if (display) display.group = (group !== null && updatedDisplays.find((candidate) => candidate.id === group)) || null;
     }
     this.globalOptions = new PropertyRows(tree.global_options.map((property) => new PropertyNode(property)));
     this.globalStatus = tree.global_status;
@@ -141,7 +141,7 @@ export class DisplaysState {
   }
 
   setValue(id: string, value: PropertyValue, options: readonly string[] | null): void {
-    const owner = this.owners.get(id);
+    const owner = this.rowOwners.get(id);
     if (owner) {
       if (owner.node.value === value && !options) return;
       owner.node.value = value;
@@ -188,19 +188,19 @@ export class DisplaysState {
   }
 
   private indexRows(): void {
-    this.owners = new Map();
-    const add = (rows: PropertyRows, display: DisplayState | null): void => {
-      for (const top of rows.nodes) for (const node of top.walk()) this.owners.set(node.id, { node, display });
+    this.rowOwners = new Map();
+    const addRows = (rows: PropertyRows, display: DisplayState | null): void => {
+      for (const topNode of rows.nodes) for (const node of topNode.walk()) this.rowOwners.set(node.id, { node, display });
     };
-    add(this.globalOptions, null);
-    for (const display of this.displays) add(display.rows, display);
+    addRows(this.globalOptions, null);
+    for (const display of this.displays) addRows(display.rows, display);
   }
 }
 
 /** Display classes that show no data in the scene. */
-const WITHOUT_DATA = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
+const CLASSES_WITHOUT_DATA = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
 
 /** Returns whether no enabled display shows data in the scene. */
 export function isSceneEmpty({ displays }: DisplaysState): boolean {
-  return displays.every((display) => !display.isEnabled || display.isGroup || WITHOUT_DATA.has(display.drawing));
+  return displays.every((display) => !display.isEnabled || display.isGroup || CLASSES_WITHOUT_DATA.has(display.drawing));
 }

@@ -12,7 +12,7 @@ export class ElementFocus {
   readonly changed = new Signal();
   readonly hoverChanged = new Signal();
   private joint: ElementName | null = null;
-  private hover: ElementName | null = null;
+  private hovered: ElementName | null = null;
 
   constructor(
     private readonly selection: SelectionState,
@@ -37,7 +37,7 @@ export class ElementFocus {
 
   /** The element under the pointer in a list or tree. */
   get hoveredElement(): ElementName | null {
-    return this.hover;
+    return this.hovered;
   }
 
   select(element: ElementName | null): void {
@@ -51,8 +51,8 @@ export class ElementFocus {
   }
 
   setHovered(element: ElementName | null): void {
-    if (isSameElement(element, this.hover)) return;
-    this.hover = element;
+    if (isSameElement(element, this.hovered)) return;
+    this.hovered = element;
     this.hoverChanged.emit();
   }
 

@@ -8,7 +8,7 @@ export interface FramePose {
   orientation: [number, number, number, number];
 }
 
-const NOTHING = new Float32Array(0);
+const NO_NUMBERS = new Float32Array(0);
 
 /** The newest pose of every frame. Rows are those of the frame table; a row of NaN has no transform. */
 export class FrameStore {
@@ -20,8 +20,8 @@ export class FrameStore {
   readonly agesChanged = new Signal();
   names: readonly string[] = [];
   parents: readonly number[] = [];
-  poses: Float32Array = NOTHING;
-  ages: Float32Array = NOTHING;
+  poses: Float32Array = NO_NUMBERS;
+  ages: Float32Array = NO_NUMBERS;
   stamp = 0;
   /** The fixed frame, which may be unknown to tf. */
   fixedFrame = "";
@@ -62,28 +62,28 @@ export class FrameStore {
     return this.rows.get(name) ?? -1;
   }
 
-  has(row: number): boolean {
+  hasPose(row: number): boolean {
     return row >= 0 && !Number.isNaN(this.poses[row * 7] ?? NaN);
   }
 
   /** Returns the distance of two frames: the largest difference of their coordinates in m or quaternion components. */
   computeDifference(first: string, second: string): number {
-    const [a, b] = [this.rowOf(first), this.rowOf(second)];
-    if (!this.has(a) || !this.has(b)) return Infinity;
+    const [firstRow, secondRow] = [this.rowOf(first), this.rowOf(second)];
+    if (!this.hasPose(firstRow) || !this.hasPose(secondRow)) return Infinity;
     let maximum = 0;
-    for (let i = 0; i < 7; i++) maximum = Math.max(maximum, Math.abs((this.poses[a * 7 + i] ?? 0) - (this.poses[b * 7 + i] ?? 0)));
+    for (let i = 0; i < 7; i++) maximum = Math.max(maximum, Math.abs((this.poses[firstRow * 7 + i] ?? 0) - (this.poses[secondRow * 7 + i] ?? 0)));
     return maximum;
   }
 
   /** Returns all frames with a pose. */
   snapshot(): Record<string, FramePose> {
-    const result: Record<string, FramePose> = {};
+    const framePoses: Record<string, FramePose> = {};
     this.names.forEach((name, row) => {
-      if (!this.has(row)) return;
+      if (!this.hasPose(row)) return;
       const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = this.poses.subarray(row * 7, row * 7 + 7);
-      result[name] = { position: [x, y, z], orientation: [qx, qy, qz, qw] };
+      framePoses[name] = { position: [x, y, z], orientation: [qx, qy, qz, qw] };
     });
-    return result;
+    return framePoses;
   }
 
   private apply(transforms: Transforms): void {
@@ -97,7 +97,7 @@ export class FrameStore {
   }
 }
 
-function hasSameNumbers(a: Float32Array, b: Float32Array): boolean {
-  for (let i = 0; i < a.length; i++) if (!Object.is(a[i], b[i])) return false;
+function hasSameNumbers(firstRow: Float32Array, secondRow: Float32Array): boolean {
+  for (let i = 0; i < firstRow.length; i++) if (!Object.is(firstRow[i], secondRow[i])) return false;
   return true;
 }

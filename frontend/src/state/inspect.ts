@@ -1,10 +1,10 @@
 import { Signal } from "../signal";
 import type { TextStorage } from "../storage";
 
-const KEY = "linkwright.inspect";
+const STORAGE_KEY = "linkwright.inspect";
 
 /** The invisible properties of a robot that are drawn. */
-export interface Inspected {
+export interface InspectedProperties {
   /** Centers of mass of the links and of the whole robot. */
   centers: boolean;
   /** Boxes with the same inertia. */
@@ -19,7 +19,7 @@ export interface Inspected {
   frames: boolean;
 }
 
-const NOTHING: Inspected = {
+const ALL_OFF: InspectedProperties = {
   centers: false,
   boxes: false,
   ellipsoids: false,
@@ -33,17 +33,17 @@ const NOTHING: Inspected = {
  */
 export class InspectState {
   readonly changed = new Signal();
-  private settings: Inspected;
-  private size: number;
+  private settings: InspectedProperties;
+  private markScale: number;
   private depth: number | null = null;
 
   constructor(private readonly storage: TextStorage) {
-    const { scale, ...shown } = parseSettings(storage.getItem(KEY));
-    this.settings = { ...NOTHING, ...shown };
-    this.size = scale;
+    const { scale, ...switches } = parseSettings(storage.getItem(STORAGE_KEY));
+    this.settings = { ...ALL_OFF, ...switches };
+    this.markScale = scale;
   }
 
-  get current(): Readonly<Inspected> {
+  get current(): Readonly<InspectedProperties> {
     return this.settings;
   }
 
@@ -54,12 +54,12 @@ export class InspectState {
 
   /** The scale of marks, relative to a size that suits the robot. */
   get scale(): number {
-    return this.size;
+    return this.markScale;
   }
 
   set scale(scale: number) {
-    this.size = scale;
-    this.remember();
+    this.markScale = scale;
+    this.store();
   }
 
   /** The depth down to which frames are drawn; null for all. */
@@ -69,26 +69,26 @@ export class InspectState {
 
   set maxDepth(depth: number | null) {
     this.depth = depth;
-    this.remember();
+    this.store();
   }
 
-  set(setting: keyof Inspected, isOn: boolean): void {
+  set(setting: keyof InspectedProperties, isOn: boolean): void {
     this.settings = { ...this.settings, [setting]: isOn };
-    this.remember();
+    this.store();
   }
 
-  private remember(): void {
-    this.storage.setItem(KEY, JSON.stringify({ ...this.settings, scale: this.size }));
+  private store(): void {
+    this.storage.setItem(STORAGE_KEY, JSON.stringify({ ...this.settings, scale: this.markScale }));
     this.changed.emit();
   }
 }
 
-function parseSettings(text: string | null): Partial<Inspected> & { scale: number } {
+function parseSettings(text: string | null): Partial<InspectedProperties> & { scale: number } {
   try {
     const values = JSON.parse(text ?? "{}") as Record<string, unknown>;
-    const settings = Object.keys(NOTHING).map((name) => [name, values[name] === true]);
+    const settings = Object.keys(ALL_OFF).map((name) => [name, values[name] === true]);
     const scale = values["scale"];
-    return { ...(Object.fromEntries(settings) as Partial<Inspected>), scale: typeof scale === "number" && scale > 0 ? scale : 1 };
+    return { ...(Object.fromEntries(settings) as Partial<InspectedProperties>), scale: typeof scale === "number" && scale > 0 ? scale : 1 };
   } catch {
     return { scale: 1 };
   }

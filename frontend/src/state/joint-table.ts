@@ -27,11 +27,11 @@ interface JointTexts {
 
 /** Returns the texts of a joint's row. */
 export function formatJointCells(joint: JointDetails, angles: AngleUnits, texts: JointTexts): Record<Column, string> {
-  const scale = angles.scale(joint.kind);
+  const scale = angles.scaleOf(joint.kind);
   const unit = joint.kind === "prismatic" ? "m" : angles.current;
   const isMovable = joint.kind !== "fixed";
   const formatAmount = (value: number | null, unit: string): string => (value === null ? "" : `${formatRounded(value)} ${unit}`.trim());
-  const formatScaled = (value: number | null, per = ""): string => (value === null ? "" : formatAmount(value * scale, unit + per));
+  const formatScaled = (value: number | null, perTime = ""): string => (value === null ? "" : formatAmount(value * scale, unit + perTime));
   const { mimic, damping, friction, soft_lower, soft_upper } = joint;
   return {
     name: joint.name,
@@ -68,7 +68,7 @@ export function formatMimic(joint: string, multiplier: number, offset: number, u
 export function sortJoints(joints: readonly JointDetails[], column: Column, isDescending: boolean): JointDetails[] {
   const sign = isDescending ? -1 : 1;
   return [...joints].sort((a, b) => {
-    const [x, y] = [valueOf(a, column), valueOf(b, column)];
+    const [x, y] = [sortValueOf(a, column), sortValueOf(b, column)];
     if (x === null || y === null) return Number(x === null) - Number(y === null);
     const order = typeof x === "number" && typeof y === "number" ? x - y : COLLATOR.compare(String(x), String(y));
     return order * sign;
@@ -77,7 +77,7 @@ export function sortJoints(joints: readonly JointDetails[], column: Column, isDe
 
 const COLLATOR = new Intl.Collator("en", { numeric: true });
 
-function valueOf(joint: JointDetails, column: Column): number | string | null {
+function sortValueOf(joint: JointDetails, column: Column): number | string | null {
   switch (column) {
     case "axis":
       return joint.axis.join(" ");

@@ -4,7 +4,7 @@ import { Signal } from "../signal";
 import type { PageMemory } from "./page-memory";
 
 /** The maximum number of joints in one message, because the server accepts messages of 64 KiB. */
-const MAX_PER_MESSAGE = 200;
+const MAX_JOINTS_PER_MESSAGE = 200;
 
 export type Positions = Readonly<Record<string, number>>;
 
@@ -19,9 +19,9 @@ export class JointsState {
   dragsWithoutAlt = false;
   private pendingPositions: Record<string, number> | null = null;
   /** The latest joints, also after the program has ended. */
-  private latest: readonly JointControl[] = [];
+  private latestControls: readonly JointControl[] = [];
   /** The joint positions from before a restart of the program, until the new program has sliders. */
-  private beforeRestart: Positions = {};
+  private positionsBeforeRestart: Positions = {};
 
   constructor(
     private readonly connection: Connection,
@@ -55,35 +55,35 @@ export class JointsState {
   }
 
   /** Returns the joint that must be moved so that `name` gets to `position`, and its position; null if no joint can. */
-  leaderOf(name: string, position: number): { control: JointControl; position: number } | null {
+  findLeader(name: string, position: number): { control: JointControl; position: number } | null {
     const visited = new Set<string>();
-    for (let leaderPosition = position, next = name; !visited.has(next); ) {
-      visited.add(next);
-      const control = this.controls?.find((candidate) => candidate.name === next);
+    for (let leaderPosition = position, jointName = name; !visited.has(jointName); ) {
+      visited.add(jointName);
+      const control = this.controls?.find((candidate) => candidate.name === jointName);
       if (!control) return null;
       if (control.mimic === null) return { control, position: leaderPosition };
       if (control.multiplier === 0) return null;
       leaderPosition = (leaderPosition - control.offset) / control.multiplier;
-      next = control.mimic;
+      jointName = control.mimic;
     }
     return null;
   }
 
   /** Moves joints back to their positions after the program was restarted, if it shows the same robot. */
-  onProgramRestarted(isSame: boolean): void {
-    const movedJoints = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
+  onProgramRestarted(isSameRobot: boolean): void {
+    const movedJoints = this.latestControls.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
     const positions = movedJoints.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);
-    this.beforeRestart = isSame ? { ...this.beforeRestart, ...(Object.fromEntries(positions) as Positions) } : {};
+    this.positionsBeforeRestart = isSameRobot ? { ...this.positionsBeforeRestart, ...(Object.fromEntries(positions) as Positions) } : {};
   }
 
   private setControls(controls: readonly JointControl[] | null): void {
     this.controls = controls;
     this.controlsChanged.emit();
     if (controls === null || controls.length === 0) return;
-    this.latest = controls;
+    this.latestControls = controls;
     const names = new Set(controls.map(({ name }) => name));
-    const positions = Object.entries(this.beforeRestart).filter(([name]) => names.has(name));
-    this.beforeRestart = {};
+    const positions = Object.entries(this.positionsBeforeRestart).filter(([name]) => names.has(name));
+    this.positionsBeforeRestart = {};
     this.send(Object.fromEntries(positions));
   }
 
@@ -99,9 +99,9 @@ export class JointsState {
       this.connection.send({ type: "set_joint", name: entry[0], position: entry[1] });
       return;
     }
-    for (let i = 0; i < entries.length; i += MAX_PER_MESSAGE) {
-      const part = Object.fromEntries(entries.slice(i, i + MAX_PER_MESSAGE));
-      this.connection.send({ type: "set_joints", positions: part });
+    for (let i = 0; i < entries.length; i += MAX_JOINTS_PER_MESSAGE) {
+      const batch = Object.fromEntries(entries.slice(i, i + MAX_JOINTS_PER_MESSAGE));
+      this.connection.send({ type: "set_joints", positions: batch });
     }
   }
 }

@@ -30,13 +30,13 @@ export class LinkTreeState {
   }
 
   /** Folds or unfolds everything. */
-  foldAll(model: DescriptionModel, foldsAll: boolean): void {
-    this.foldedLinks = new Set(foldsAll ? model.links.keys() : []);
+  setAllFolded(model: DescriptionModel, isFolded: boolean): void {
+    this.foldedLinks = new Set(isFolded ? model.links.keys() : []);
   }
 
   /** Unfolds the ancestors of a link. */
   reveal(model: DescriptionModel, link: string): void {
-    for (let joint = model.jointAbove(link); joint; joint = model.jointAbove(joint.parent)) this.foldedLinks.delete(joint.parent);
+    for (let joint = model.parentJointOf(link); joint; joint = model.parentJointOf(joint.parent)) this.foldedLinks.delete(joint.parent);
   }
 }
 
@@ -46,17 +46,17 @@ export class LinkTreeState {
  */
 export function listVisibleRows(model: DescriptionModel, state: LinkTreeState, search: string): TreeRow[] {
   const searchWords = search.toLowerCase().split(/\s+/).filter((word) => word !== "");
-  const matching = searchWords.length > 0 ? matchesOf(model, searchWords) : null;
+  const matchingLinks = searchWords.length > 0 ? findMatchingLinks(model, searchWords) : null;
   const rows: TreeRow[] = [];
   const visited = new Set<string>();
   const stack: [string, JointDetails | null, number][] = [[model.description.root, null, 0]];
   for (let next = stack.pop(); next; next = stack.pop()) {
     const [name, joint, depth] = next;
     const link = model.links.get(name);
-    if (!link || visited.has(name) || (matching && !matching.has(name))) continue;
+    if (!link || visited.has(name) || (matchingLinks && !matchingLinks.has(name))) continue;
     visited.add(name);
-    const joints = model.jointsBelow(name);
-    const isFolded = !matching && state.isFolded(name);
+    const joints = model.childJointsOf(name);
+    const isFolded = !matchingLinks && state.isFolded(name);
     rows.push({ link, joint, depth, hasChildren: joints.length > 0, isFolded });
     if (isFolded) continue;
     for (const joint of [...joints].reverse()) stack.push([joint.child, joint, depth + 1]);
@@ -64,12 +64,16 @@ export function listVisibleRows(model: DescriptionModel, state: LinkTreeState, s
   return rows;
 }
 
-function matchesOf(model: DescriptionModel, searchWords: readonly string[]): Set<string> {
-  const matching = new Set<string>();
+function findMatchingLinks(model: DescriptionModel, searchWords: readonly string[]): Set<string> {
+  const matchingLinks = new Set<string>();
   for (const link of model.links.keys()) {
-    const names = `${link} ${model.jointAbove(link)?.name ?? ""}`.toLowerCase();
+    const names = `${link} ${model.parentJointOf(link)?.name ?? ""}`.toLowerCase();
     if (!searchWords.every((word) => names.includes(word))) continue;
-    for (let ancestor: string | undefined = link; ancestor !== undefined && !matching.has(ancestor); ancestor = model.jointAbove(ancestor)?.parent) matching.add(ancestor);
+    let ancestor: string | undefined = link;
+    while (ancestor !== undefined && !matchingLinks.has(ancestor)) {
+      matchingLinks.add(ancestor);
+      ancestor = model.parentJointOf(ancestor)?.parent;
+    }
   }
-  return matching;
+  return matchingLinks;
 }

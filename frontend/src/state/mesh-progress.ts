@@ -15,7 +15,7 @@ export interface MeshLoad {
   stage: "fetching" | "reading";
 }
 
-/** The mesh files that take longer than a moment to load. */
+/** The mesh files that take noticeably long to load. */
 export class MeshProgress {
   readonly changed = new Signal();
   private readonly shownLoads = new Set<MeshLoad>();
@@ -26,7 +26,7 @@ export class MeshProgress {
   }
 
   /** Starts tracking a file, whose loader then reports its progress. */
-  begin(name: string): LoadReport {
+  startLoad(name: string): LoadReport {
     const load: MeshLoad = { name, bytes: 0, total: null, stage: "fetching" };
     const show = (): void => {
       this.shownLoads.add(load);

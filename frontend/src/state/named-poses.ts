@@ -7,7 +7,7 @@ export interface NamedPose {
   readonly positions: Readonly<Record<string, number>>;
 }
 
-const KEY = "linkwright.poses.";
+const STORAGE_KEY_PREFIX = "linkwright.poses.";
 
 /**
  * The named poses of each robot, by the robot's name. The browser stores them; a file transfers them to another
@@ -20,7 +20,7 @@ export class PoseStore {
 
   posesOf(robot: string): readonly NamedPose[] {
     try {
-      const poses: unknown = JSON.parse(this.storage.getItem(KEY + robot) ?? "[]");
+      const poses: unknown = JSON.parse(this.storage.getItem(STORAGE_KEY_PREFIX + robot) ?? "[]");
       return Array.isArray(poses) ? poses.filter(isPose) : [];
     } catch {
       return [];
@@ -38,13 +38,13 @@ export class PoseStore {
   }
 
   private write(robot: string, poses: readonly NamedPose[]): void {
-    this.storage.setItem(KEY + robot, JSON.stringify(poses));
+    this.storage.setItem(STORAGE_KEY_PREFIX + robot, JSON.stringify(poses));
     this.changed.emit();
   }
 }
 
 /** Returns poses as group states of an SRDF file, which MoveIt reads, too. */
-export function toSrdf(robot: string, poses: readonly NamedPose[]): string {
+export function formatSrdf(robot: string, poses: readonly NamedPose[]): string {
   const states = poses.map(({ name, positions }) => {
     const joints = Object.entries(positions).map(
       ([joint, value]) => `    <joint name="${escapeXml(joint)}" value="${String(value)}"/>`,
@@ -58,17 +58,17 @@ export function toSrdf(robot: string, poses: readonly NamedPose[]): string {
  * Returns the group states of an SRDF file. States of several groups with the same name become several poses; joints
  * with several values are omitted.
  */
-export function readSrdf(srdf: string): NamedPose[] {
+export function parseSrdf(srdf: string): NamedPose[] {
   const text = srdf.replace(/<!--[\s\S]*?-->/g, "");
   const poses = new Map<string, NamedPose>();
-  for (const [, tag = "", content = ""] of text.matchAll(/<group_state\b([^>]*)>([\s\S]*?)<\/group_state\s*>/g)) {
+  for (const [, groupAttributes = "", content = ""] of text.matchAll(/<group_state\b([^>]*)>([\s\S]*?)<\/group_state\s*>/g)) {
     const positions: Record<string, number> = {};
-    for (const [, joint = ""] of content.matchAll(/<joint\b([^>]*)>/g)) {
-      const [name, value] = [attributeOf(joint, "name"), attributeOf(joint, "value")];
+    for (const [, jointAttributes = ""] of content.matchAll(/<joint\b([^>]*)>/g)) {
+      const [name, value] = [readAttribute(jointAttributes, "name"), readAttribute(jointAttributes, "value")];
       if (name !== null && value !== null && value !== "" && Number.isFinite(Number(value))) positions[name] = Number(value);
     }
-    const poseName = attributeOf(tag, "name") ?? "";
-    const name = poses.has(poseName) ? `${poseName} (${attributeOf(tag, "group") ?? ""})` : poseName;
+    const poseName = readAttribute(groupAttributes, "name") ?? "";
+    const name = poses.has(poseName) ? `${poseName} (${readAttribute(groupAttributes, "group") ?? ""})` : poseName;
     if (name !== "" && Object.keys(positions).length > 0) poses.set(name, { name, positions });
   }
   return [...poses.values()];
@@ -87,18 +87,18 @@ function isPose(value: unknown): value is NamedPose {
   return typeof pose?.name === "string" && typeof pose.positions === "object";
 }
 
-function attributeOf(tag: string, name: string): string | null {
+function readAttribute(tag: string, name: string): string | null {
   const match = new RegExp(`(?:^|\\s)${name}\\s*=\\s*(?:"([^"]*)"|'([^']*)')`).exec(tag);
   const value = match && (match[1] ?? match[2]);
   return value === null || value === undefined ? null : unescapeXml(value).trim();
 }
 
-const ENTITIES: Readonly<Record<string, string>> = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
+const XML_ENTITIES: Readonly<Record<string, string>> = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
 
 function escapeXml(text: string): string {
-  return text.replace(/[&<>"]/g, (character) => ENTITIES[character] ?? character);
+  return text.replace(/[&<>"]/g, (character) => XML_ENTITIES[character] ?? character);
 }
 
 function unescapeXml(text: string): string {
-  return Object.entries(ENTITIES).reduceRight((unescaped, [character, entity]) => unescaped.replaceAll(entity, character), text);
+  return Object.entries(XML_ENTITIES).reduceRight((unescaped, [character, entity]) => unescaped.replaceAll(entity, character), text);
 }

@@ -7,10 +7,10 @@ import type { TopicChoice } from "../protocol";
  */
 export function findObviousDisplay({ topic, message, classes }: TopicChoice): string | null {
   const type = shortNameOf(message);
-  const byType = classes.filter((cls) => type.includes(shortNameOf(cls)));
-  const [closest] = byType.sort((a, b) => shortNameOf(b).length - shortNameOf(a).length);
-  const byTopic = classes.find((cls) => topic.includes(firstWordOf(shortNameOf(cls))));
-  return closest ?? byTopic ?? classes[0] ?? null;
+  const classesForType = classes.filter((cls) => type.includes(shortNameOf(cls)));
+  const [closestClass] = classesForType.sort((a, b) => shortNameOf(b).length - shortNameOf(a).length);
+  const classForTopic = classes.find((cls) => topic.includes(firstWordOf(shortNameOf(cls))));
+  return closestClass ?? classForTopic ?? classes[0] ?? null;
 }
 
 /** Returns the first word, such as `robot` for RobotModel. */

@@ -4,7 +4,7 @@ import type { BrowserStorage } from "../storage";
 /**
  * The storage key; it contains the version of the protocol, so that state from another version of the page is ignored.
  */
-const KEY = `linkwright.kept.${PROTOCOL_VERSION}`;
+const STORAGE_KEY = `linkwright.kept.${PROTOCOL_VERSION}`;
 
 /** State that survives the reload of the page when the user chooses another language. */
 export class PageMemory {
@@ -12,8 +12,8 @@ export class PageMemory {
   private readonly previous: Readonly<Record<string, unknown>>;
 
   constructor(private readonly storage: Omit<BrowserStorage, "lasts">) {
-    this.previous = JSON.parse(storage.getItem(KEY) ?? "{}") as Record<string, unknown>;
-    storage.removeItem(KEY);
+    this.previous = JSON.parse(storage.getItem(STORAGE_KEY) ?? "{}") as Record<string, unknown>;
+    storage.removeItem(STORAGE_KEY);
   }
 
   /**
@@ -27,6 +27,6 @@ export class PageMemory {
 
   /** Stores all parts, because the page is about to be reloaded. */
   store(): void {
-    this.storage.setItem(KEY, JSON.stringify(Object.fromEntries([...this.parts].map(([name, read]) => [name, read()]))));
+    this.storage.setItem(STORAGE_KEY, JSON.stringify(Object.fromEntries([...this.parts].map(([name, read]) => [name, read()]))));
   }
 }

@@ -6,22 +6,22 @@ type Vector = readonly [number, number, number];
 
 /** Returns a pose `b` given in the frame `a`, in the frame in which `a` is given. */
 export function composePoses(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
-  const [x, y, z] = rotate(turnOf(a), placeOf(b));
-  return [a[0] + x, a[1] + y, a[2] + z, ...multiply(turnOf(a), turnOf(b))];
+  const [x, y, z] = rotate(rotationOf(a), positionOf(b));
+  return [a[0] + x, a[1] + y, a[2] + z, ...multiply(rotationOf(a), rotationOf(b))];
 }
 
 /** Returns the pose of `b` in `a`, where both are given in the same frame. */
 export function computeRelativePose(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
-  const [x, y, z, w] = turnOf(a);
+  const [x, y, z, w] = rotationOf(a);
   const inverse: Rotation = [-x, -y, -z, w];
-  return [...rotate(inverse, [b[0] - a[0], b[1] - a[1], b[2] - a[2]]), ...multiply(inverse, turnOf(b))];
+  return [...rotate(inverse, [b[0] - a[0], b[1] - a[1], b[2] - a[2]]), ...multiply(inverse, rotationOf(b))];
 }
 
-function placeOf([x, y, z]: PoseNumbers): Vector {
+function positionOf([x, y, z]: PoseNumbers): Vector {
   return [x, y, z];
 }
 
-function turnOf(pose: PoseNumbers): Rotation {
+function rotationOf(pose: PoseNumbers): Rotation {
   return [pose[3], pose[4], pose[5], pose[6]];
 }
 

@@ -50,8 +50,8 @@ export class PropertyRows {
   }
 
   find(...path: readonly string[]): PropertyNode | undefined {
-    const [first, ...childPath] = path;
-    let node = first === undefined ? undefined : this.byName.get(first);
+    const [firstName, ...childPath] = path;
+    let node = firstName === undefined ? undefined : this.byName.get(firstName);
     for (const name of childPath) node = node?.children.find((child) => child.name === name);
     return node;
   }

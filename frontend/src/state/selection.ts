@@ -47,12 +47,12 @@ export class SelectionState {
   }
 
   pick(items: readonly SelectedItem[], mode: SelectionMode): void {
-    const next = new Map((mode === "replace" ? [] : this.current).map((item) => [identityOf(item), item]));
+    const next = new Map((mode === "replace" ? [] : this.current).map((item) => [createItemKey(item), item]));
     for (const item of items) {
-      if (mode === "remove") next.delete(identityOf(item));
-      else next.set(identityOf(item), item);
+      if (mode === "remove") next.delete(createItemKey(item));
+      else next.set(createItemKey(item), item);
     }
-    const isUnchanged = next.size === this.current.length && this.current.every((item) => next.has(identityOf(item)));
+    const isUnchanged = next.size === this.current.length && this.current.every((item) => next.has(createItemKey(item)));
     if (!isUnchanged) this.setItems([...next.values()]);
   }
 
@@ -83,6 +83,6 @@ export class SelectionState {
   }
 }
 
-function identityOf({ display, key }: SelectedItem): string {
+function createItemKey({ display, key }: SelectedItem): string {
   return `${display} ${key}`;
 }

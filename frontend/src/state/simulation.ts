@@ -12,7 +12,7 @@ export class SimulationState {
   /** The user asked to add a model at a position in the world, m. */
   readonly spawnRequested = new Signal<readonly number[]>();
   /** Returns a free position for a model in the world, m; the drawing of a world replaces this function. */
-  findFreePlace: () => readonly number[] = () => [0, 0, 0];
+  findFreePosition: () => readonly number[] = () => [0, 0, 0];
   private status: SimulationStatus | null = null;
 
   constructor(private readonly connection: Connection) {
@@ -38,7 +38,7 @@ export class SimulationState {
   }
 
   /** The real-time factor: simulated seconds per second. */
-  get factor(): number | null {
+  get realTimeFactor(): number | null {
     return this.status?.real_time_factor ?? null;
   }
 
@@ -56,11 +56,11 @@ export class SimulationState {
   }
 
   /** Moves a model by an offset in the world's frame, m, from its position at the start of the drag. */
-  drag(model: string, offset: readonly number[], isBeginning: boolean): void {
-    this.connection.send({ type: "drag_model", model, begins: isBeginning, offset: [...offset] });
+  drag(model: string, offset: readonly number[], isStart: boolean): void {
+    this.connection.send({ type: "drag_model", model, begins: isStart, offset: [...offset] });
   }
 
-  /** Pushes a link for a moment: `force` in the world's frame, N; `point` in the link's frame, m. */
+  /** Pushes a link briefly: `force` in the world's frame, N; `point` in the link's frame, m. */
   push(link: string, point: readonly number[], force: readonly number[]): void {
     this.connection.send({ type: "push_link", link, point: [...point], force: [...force] });
   }

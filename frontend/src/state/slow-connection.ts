@@ -5,14 +5,14 @@ import type { DisplayDataStore } from "./display-data";
 /** The period over which the rate of contents is measured, ms. */
 const RATE_WINDOW_MS = 3000;
 /** A WebP image at full resolution with a higher quality than this looks like the original. */
-const VISIBLE_LOSS_QUALITY = 70;
+const MAX_LOSSY_QUALITY = 70;
 
 /** How the content of a display was reduced. */
 export type Reduction =
   | { kind: "points"; step: number }
   | { kind: "image"; columns: number; rows: number; width: number; height: number; quality: number };
 
-export interface Reduced {
+export interface ReducedDisplay {
   display: string;
   reduction: Reduction;
   /** The rate of contents, Hz; null if there were too few to measure it. */
@@ -31,8 +31,8 @@ export class SlowConnection {
     });
   }
 
-  get reduced(): Reduced[] {
-    return [...this.reductions].map(([display, { reduction, times }]) => ({ display, reduction, rate: rateOf(times) }));
+  get reducedDisplays(): ReducedDisplay[] {
+    return [...this.reductions].map(([display, { reduction, times }]) => ({ display, reduction, rate: computeRate(times) }));
   }
 
   private countContent({ display, content }: DisplayData): void {
@@ -50,12 +50,12 @@ export class SlowConnection {
 
 function reductionOf(content: DisplayData["content"]): Reduction | null {
   if (content.kind === "cloud_points") return content.step > 1 ? { kind: "points", step: content.step } : null;
-  if (content.kind !== "image_frame" || content.quality === 0 || content.quality > VISIBLE_LOSS_QUALITY) return null;
+  if (content.kind !== "image_frame" || content.quality === 0 || content.quality > MAX_LOSSY_QUALITY) return null;
   const { columns, rows, width, height, quality } = content;
   return { kind: "image", columns, rows, width, height, quality };
 }
 
-function rateOf(times: readonly number[]): number | null {
+function computeRate(times: readonly number[]): number | null {
   const [oldestTime, newestTime] = [times[0], times.at(-1)];
   if (oldestTime === undefined || newestTime === undefined || newestTime - oldestTime < RATE_WINDOW_MS / 10) return null;
   return ((times.length - 1) * 1000) / (newestTime - oldestTime);

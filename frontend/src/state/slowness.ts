@@ -7,9 +7,9 @@ import type { SlowConnection } from "./slow-connection";
 export type SlowCause = "page" | "program" | "line";
 
 /** The interval at which the delay of the page's timers is measured, ms. */
-const INTERVAL_MS = 50;
+const MEASUREMENT_INTERVAL_MS = 50;
 /** The number of measurements that are averaged. */
-const AVERAGED_COUNT = 40;
+const AVERAGED_MEASUREMENT_COUNT = 40;
 /** The page counts as late from the first share of time on, until it falls below the second. */
 const LATE_SHARE = 0.3;
 const TIMELY_SHARE = 0.15;
@@ -23,12 +23,12 @@ export class Slowness {
   private isProgramLate = false;
 
   constructor(
-    private readonly slowConnection: Pick<SlowConnection, "changed" | "reduced">,
-    private readonly pace: Pick<DrawingPace, "isSlow">,
+    private readonly slowConnection: Pick<SlowConnection, "changed" | "reducedDisplays">,
+    private readonly drawingPace: Pick<DrawingPace, "isSlow">,
     connection: Connection,
     private readonly now: () => number = () => performance.now(),
   ) {
-    slowConnection.changed.on(() => this.startOrStop());
+    slowConnection.changed.on(() => this.updateTimer());
     connection.on("program_is_late", ({ late }) => {
       this.isProgramLate = late;
       this.changed.emit();
@@ -37,12 +37,12 @@ export class Slowness {
   }
 
   get cause(): SlowCause {
-    if (this.pace.isSlow || this.isPageLate) return "page";
+    if (this.drawingPace.isSlow || this.isPageLate) return "page";
     return this.isProgramLate ? "program" : "line";
   }
 
-  private startOrStop(): void {
-    const isNeeded = this.slowConnection.reduced.length > 0;
+  private updateTimer(): void {
+    const isNeeded = this.slowConnection.reducedDisplays.length > 0;
     if (isNeeded === (this.timer !== undefined)) return;
     clearTimeout(this.timer);
     this.timer = undefined;
@@ -51,19 +51,19 @@ export class Slowness {
 
   /** Schedules a measurement: messages wait for a busy page as long as its timers do. */
   private scheduleMeasurement(): void {
-    const due = this.now() + INTERVAL_MS;
+    const dueTime = this.now() + MEASUREMENT_INTERVAL_MS;
     this.timer = setTimeout(() => {
       // Browsers delay the timers of hidden pages.
-      if (!globalThis.document.hidden) this.addMeasurement(Math.max(0, this.now() - due));
+      if (!globalThis.document.hidden) this.addMeasurement(Math.max(0, this.now() - dueTime));
       this.scheduleMeasurement();
-    }, INTERVAL_MS);
+    }, MEASUREMENT_INTERVAL_MS);
   }
 
   private addMeasurement(delay: number): void {
     this.delays.push(delay);
-    if (this.delays.length > AVERAGED_COUNT) this.delays.shift();
+    if (this.delays.length > AVERAGED_MEASUREMENT_COUNT) this.delays.shift();
     const sum = this.delays.reduce((total, delay) => total + delay, 0);
-    const share = sum / (sum + this.delays.length * INTERVAL_MS);
+    const share = sum / (sum + this.delays.length * MEASUREMENT_INTERVAL_MS);
     const isLate = this.isPageLate ? share > TIMELY_SHARE : share >= LATE_SHARE;
     if (isLate === this.isPageLate) return;
     this.isPageLate = isLate;

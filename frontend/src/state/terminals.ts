@@ -9,7 +9,7 @@ export interface TerminalSize {
 }
 
 /** The length of a message with input, so that none is too long for the server. */
-const INPUT_LENGTH = 32 * 1024;
+const MAX_INPUT_LENGTH = 32 * 1024;
 
 /** The terminals of the program, and the page's requests. */
 export class TerminalsState {
@@ -17,7 +17,9 @@ export class TerminalsState {
   readonly changed = new Signal();
   /** The program has got its first terminal, or lost its last one. */
   readonly availabilityChanged = new Signal();
-  /** The connection is new, so that earlier requests get no answers; emitted with whether the program is the same run. */
+  /**
+   * The connection is new, so that earlier requests get no answers; emitted with whether the program is the same run.
+   */
   readonly connected = new Signal<boolean>();
   /** The connection was lost or is back. */
   readonly connectionChanged = new Signal();
@@ -35,25 +37,25 @@ export class TerminalsState {
   unavailableReason = "";
   private isAvailableNow = false;
   /** Whether the connection is new, and the server has not reported terminals yet. */
-  private isUnknown = true;
+  private isListUnknown = true;
   /** The run of the program. */
   private run = "";
   /** The terminals that this page showed in the same run when the connection was lost. */
-  private shownBefore: ReadonlySet<number> = new Set();
+  private previouslyShown: ReadonlySet<number> = new Set();
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", ({ run }) => this.onHello(run));
     connection.on("terminals", ({ folder, terminals, refusal_reason: unavailableReason }) => {
-      if (this.isUnknown && folder !== "") connection.send({ type: "watch_program_pages" });
-      [this.folder, this.items, this.unavailableReason] = [folder, this.isUnknown ? this.excludeLost(terminals) : terminals, unavailableReason];
-      this.isUnknown = false;
+      if (this.isListUnknown && folder !== "") connection.send({ type: "watch_program_pages" });
+      [this.folder, this.items, this.unavailableReason] = [folder, this.isListUnknown ? this.ignoreLostConnection(terminals) : terminals, unavailableReason];
+      this.isListUnknown = false;
       this.setAvailable(folder !== "");
       this.changed.emit();
     });
     // The last message to a page that opens: a program without terminals has sent no `terminals` before it.
     connection.on("frame_table", () => {
-      if (this.isUnknown) this.setAvailable(false);
-      this.isUnknown = false;
+      if (this.isListUnknown) this.setAvailable(false);
+      this.isListUnknown = false;
     });
     connection.on("program_pages", ({ pages }) => this.setPrograms(pages));
     connection.stateChanged.on(() => this.connectionChanged.emit());
@@ -90,7 +92,7 @@ export class TerminalsState {
 
   /** Sends input: a text, or bytes as the characters of a string. */
   write(terminal: number, text: string, isBinary = false): void {
-    for (const part of partsOf(text, INPUT_LENGTH)) {
+    for (const part of splitText(text, MAX_INPUT_LENGTH)) {
       this.connection.send({ type: "write_terminal", terminal, text: part, is_binary: isBinary });
     }
   }
@@ -112,16 +114,18 @@ export class TerminalsState {
   }
 
   private onHello(run: string): void {
-    this.isUnknown = true;
+    this.isListUnknown = true;
     const isSameRun = run === this.run;
-    this.shownBefore = new Set(isSameRun ? this.items.filter(({ shown }) => shown === "here").map(({ id }) => id) : []);
+    this.previouslyShown = new Set(isSameRun ? this.items.filter(({ shown }) => shown === "here").map(({ id }) => id) : []);
     this.run = run;
     this.connected.emit(isSameRun);
   }
 
-  /** Returns terminals where the lost connection does not count as another page; the program may not know of the loss. */
-  private excludeLost(items: readonly TerminalItem[]): TerminalItem[] {
-    return items.map((item) => (item.shown === "elsewhere" && this.shownBefore.has(item.id) ? { ...item, shown: "nowhere" } : item));
+  /**
+   * Returns terminals where the lost connection does not count as another page; the program may not know of the loss.
+   */
+  private ignoreLostConnection(items: readonly TerminalItem[]): TerminalItem[] {
+    return items.map((item) => (item.shown === "elsewhere" && this.previouslyShown.has(item.id) ? { ...item, shown: "nowhere" } : item));
   }
 
   private setPrograms(pages: readonly ProgramPage[]): void {
@@ -139,7 +143,7 @@ export class TerminalsState {
 }
 
 /** Divides a text into parts of at most `length`, without dividing a character of two UTF-16 units. */
-export function partsOf(text: string, length: number): string[] {
+export function splitText(text: string, length: number): string[] {
   const parts: string[] = [];
   for (let start = 0; start < text.length; ) {
     let end = Math.min(start + length, text.length);

@@ -5,7 +5,7 @@ export const THEME_CHOICES = ["system", "dark", "light"] as const;
 export type ThemeChoice = (typeof THEME_CHOICES)[number];
 export type Theme = "dark" | "light";
 
-const KEY = "linkwright.theme";
+const STORAGE_KEY = "linkwright.theme";
 
 /** The page's colors: the user's choice, or else the system's. The scene has colors of its own, as in RViz. */
 export class ThemeState {
@@ -17,7 +17,7 @@ export class ThemeState {
     private readonly storage: TextStorage,
     private readonly system: MediaQueryList,
   ) {
-    const storedChoice = storage.getItem(KEY);
+    const storedChoice = storage.getItem(STORAGE_KEY);
     this.currentChoice = THEME_CHOICES.find((choice) => choice === storedChoice) ?? "system";
     system.addEventListener("change", () => this.apply());
     this.apply();
@@ -34,7 +34,7 @@ export class ThemeState {
 
   choose(choice: ThemeChoice): void {
     this.currentChoice = choice;
-    this.storage.setItem(KEY, choice);
+    this.storage.setItem(STORAGE_KEY, choice);
     this.apply();
   }
 

@@ -27,20 +27,20 @@ interface Contour {
 }
 
 /**
- * Lays out a tree with its root at the top: each level in a row, each parent centered over its children, and subtrees as
- * close to each other as `gap` permits on every level (after Reingold and Tilford).
+ * Lays out a tree with its root at the top: each level in a row, each parent centered over its children, and subtrees
+ * as close to each other as `gap` permits on every level (after Reingold and Tilford).
  */
 export function layOutTree(root: TreeNode, gap: number, levelGap: number): TidyTree {
-  const order = listInPreorder(root);
+  const entries = listInPreorder(root);
   const offsets = new Map<TreeNode, number>();
   const contours = new Map<TreeNode, Contour>();
   // Go from the leaves up, without recursion, because chains may be thousands of nodes long.
-  for (const { node } of [...order].reverse()) contours.set(node, placeChildren(node, contours, offsets, gap));
-  const rows = computeRowTops(order, levelGap);
-  const outline = contours.get(root) ?? { left: [0], right: [0] };
-  const left = Math.min(...outline.left);
+  for (const { node } of [...entries].reverse()) contours.set(node, placeChildren(node, contours, offsets, gap));
+  const rows = computeRowTops(entries, levelGap);
+  const rootContour = contours.get(root) ?? { left: [0], right: [0] };
+  const left = Math.min(...rootContour.left);
   const placedNodes = new Map<TreeNode, PlacedNode>();
-  const nodes = order.map(({ node, depth, parent: parentNode }) => {
+  const nodes = entries.map(({ node, depth, parent: parentNode }) => {
     const parent = (parentNode && placedNodes.get(parentNode)) ?? null;
     const x = parent ? parent.x + (offsets.get(node) ?? 0) : -left;
     const { top = 0, height = 0 } = rows[depth] ?? {};
@@ -49,7 +49,7 @@ export function layOutTree(root: TreeNode, gap: number, levelGap: number): TidyT
     return placedNode;
   });
   const lastRow = rows.at(-1);
-  return { nodes, width: Math.max(...outline.right) - left, height: lastRow ? lastRow.top + lastRow.height : 0 };
+  return { nodes, width: Math.max(...rootContour.right) - left, height: lastRow ? lastRow.top + lastRow.height : 0 };
 }
 
 /** Places the children of a node next to each other and returns the contour of the whole. */
@@ -60,9 +60,9 @@ function placeChildren(
   gap: number,
 ): Contour {
   const contourOfNode: Contour = { left: [-node.width / 2], right: [node.width / 2] };
-  const [first, ...otherChildren] = node.children;
-  if (!first) return contourOfNode;
-  const contour = contours.get(first);
+  const [firstChild, ...otherChildren] = node.children;
+  if (!firstChild) return contourOfNode;
+  const contour = contours.get(firstChild);
   if (contour && otherChildren.length === 0) {
     // Extend the child's contour in place, because no other node needs it and a chain may be long.
     contour.left.unshift(-node.width / 2);
@@ -89,19 +89,19 @@ function placeChildren(
 }
 
 function listInPreorder(root: TreeNode): { node: TreeNode; depth: number; parent: TreeNode | null }[] {
-  const order: { node: TreeNode; depth: number; parent: TreeNode | null }[] = [];
+  const entries: { node: TreeNode; depth: number; parent: TreeNode | null }[] = [];
   const stack = [{ node: root, depth: 0, parent: null as TreeNode | null }];
-  for (let next = stack.pop(); next; next = stack.pop()) {
-    order.push(next);
-    const { node, depth } = next;
+  for (let entry = stack.pop(); entry; entry = stack.pop()) {
+    entries.push(entry);
+    const { node, depth } = entry;
     for (const child of [...node.children].reverse()) stack.push({ node: child, depth: depth + 1, parent: node });
   }
-  return order;
+  return entries;
 }
 
-function computeRowTops(order: readonly { node: TreeNode; depth: number }[], gap: number): { top: number; height: number }[] {
+function computeRowTops(entries: readonly { node: TreeNode; depth: number }[], gap: number): { top: number; height: number }[] {
   const rows: { top: number; height: number }[] = [];
-  for (const { node, depth } of order) {
+  for (const { node, depth } of entries) {
     const row = (rows[depth] ??= { top: 0, height: 0 });
     row.height = Math.max(row.height, node.height);
   }

@@ -17,13 +17,13 @@ export class TimeControlState {
   readonly changed = new Signal();
   readonly clockChanged = new Signal();
   /** The displays were cleared. */
-  readonly wasReset = new Signal();
+  readonly displaysCleared = new Signal();
   isPaused = false;
   mode: SyncMode = "Off";
   source = "";
   sources: readonly string[] = [];
   private clock: Clock | null = null;
-  private clockAt = 0;
+  private clockReceivedAt = 0;
   private isWatching = false;
 
   constructor(
@@ -36,10 +36,10 @@ export class TimeControlState {
     });
     connection.on("clock", (clock) => {
       this.clock = clock;
-      this.clockAt = this.now();
+      this.clockReceivedAt = this.now();
       this.clockChanged.emit();
     });
-    connection.on("time_reset", () => this.wasReset.emit());
+    connection.on("time_reset", () => this.displaysCleared.emit());
     // The server does not know this page's subscriptions after a reconnect.
     connection.on("hello", () => {
       if (this.isWatching) connection.send({ type: "watch_clock", watching: true });
@@ -50,7 +50,7 @@ export class TimeControlState {
   computeTimes(): Times | null {
     if (!this.clock) return null;
     const { ros, ros_start, wall, wall_start, running } = this.clock;
-    const elapsed = (this.now() - this.clockAt) / 1000;
+    const elapsed = (this.now() - this.clockReceivedAt) / 1000;
     const rosNow = ros + (running ? elapsed : 0);
     const wallNow = wall + elapsed;
     return { ros: rosNow, rosElapsed: rosNow - ros_start, wall: wallNow, wallElapsed: wallNow - wall_start };
@@ -63,8 +63,8 @@ export class TimeControlState {
     this.connection.send({ type: "watch_clock", watching: isWatching });
   }
 
-  set(part: { paused?: boolean; mode?: SyncMode; source?: string }): void {
-    const { paused, mode, source } = { paused: this.isPaused, mode: this.mode, source: this.source, ...part };
+  set(change: { paused?: boolean; mode?: SyncMode; source?: string }): void {
+    const { paused, mode, source } = { paused: this.isPaused, mode: this.mode, source: this.source, ...change };
     this.connection.send({ type: "set_time", paused, mode, source });
   }
 

@@ -14,7 +14,7 @@ export interface TimeSpan {
 export class TimelineState {
   readonly changed = new Signal();
   readonly moved = new Signal();
-  private recording: Timeline | null = null;
+  private currentTimeline: Timeline | null = null;
   private playhead: Playhead | null = null;
   private historyExtent: HistoryExtent | null = null;
   /** The time to which the user moved, s; shown until the server reaches it. */
@@ -28,18 +28,18 @@ export class TimelineState {
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       // A new connection has no pending requests, and reports a timeline only if there is one.
-      this.recording = this.playhead = this.historyExtent = this.target = this.markedSpan = null;
+      this.currentTimeline = this.playhead = this.historyExtent = this.target = this.markedSpan = null;
       this.isSeeking = false;
       this.stepTopic = "";
       this.changed.emit();
     });
     connection.on("timeline", (timeline) => {
-      this.recording = timeline;
+      this.currentTimeline = timeline;
       this.changed.emit();
     });
     connection.on("history_extent", (extent) => {
       this.historyExtent = extent;
-      if (this.recording?.live) this.recording = { ...this.recording, start: extent.start, end: extent.end };
+      if (this.currentTimeline?.live) this.currentTimeline = { ...this.currentTimeline, start: extent.start, end: extent.end };
       this.moved.emit();
     });
     connection.on("playhead", (playhead) => this.setPlayhead(playhead));
@@ -47,7 +47,7 @@ export class TimelineState {
 
   /** The current timeline; null if there is none. */
   get timeline(): Timeline | null {
-    return this.recording;
+    return this.currentTimeline;
   }
 
   /** Whether live data is shown, so that time advances. */
@@ -79,15 +79,15 @@ export class TimelineState {
 
   /** The time shown, s since the epoch. */
   get position(): number {
-    if (this.isLive && this.target === null) return this.recording?.end ?? 0;
-    return this.target ?? this.playhead?.position ?? this.recording?.start ?? 0;
+    if (this.isLive && this.target === null) return this.currentTimeline?.end ?? 0;
+    return this.target ?? this.playhead?.position ?? this.currentTimeline?.start ?? 0;
   }
 
   /** The part of the history that the user marked, as far as the history still contains it. */
   get mark(): TimeSpan | null {
-    const { recording, markedSpan } = this;
-    if (!recording?.live || !markedSpan || markedSpan.end <= recording.start) return null;
-    return { start: Math.max(markedSpan.start, recording.start), end: Math.min(markedSpan.end, recording.end) };
+    const { currentTimeline, markedSpan } = this;
+    if (!currentTimeline?.live || !markedSpan || markedSpan.end <= currentTimeline.start) return null;
+    return { start: Math.max(markedSpan.start, currentTimeline.start), end: Math.min(markedSpan.end, currentTimeline.end) };
   }
 
   /** Marks the part between two times in either order; null removes the mark. */
@@ -98,14 +98,14 @@ export class TimelineState {
 
   /** Moves the start or end of the mark to the time shown. */
   markHere(end: "start" | "end"): void {
-    const { recording, position } = this;
-    if (!recording?.live) return;
-    const span = this.mark ?? { start: recording.start, end: recording.end };
-    if (end === "start") this.setMark({ start: position, end: span.end > position ? span.end : recording.end });
-    else this.setMark({ start: span.start < position ? span.start : recording.start, end: position });
+    const { currentTimeline, position } = this;
+    if (!currentTimeline?.live) return;
+    const span = this.mark ?? { start: currentTimeline.start, end: currentTimeline.end };
+    if (end === "start") this.setMark({ start: position, end: span.end > position ? span.end : currentTimeline.end });
+    else this.setMark({ start: span.start < position ? span.start : currentTimeline.start, end: position });
   }
 
-  play(isPlaying: boolean): void {
+  setPlaying(isPlaying: boolean): void {
     this.connection.send({ type: "play", playing: isPlaying });
   }
 
@@ -127,8 +127,8 @@ export class TimelineState {
 
   /** Moves to a time. While the server is still processing a move, only the newest further one is kept. */
   seek(position: number): void {
-    if (!this.recording) return;
-    this.target = Math.min(this.recording.end, Math.max(this.recording.start, position));
+    if (!this.currentTimeline) return;
+    this.target = Math.min(this.currentTimeline.end, Math.max(this.currentTimeline.start, position));
     if (!this.isSeeking) this.requestSeek(this.target);
     this.moved.emit();
   }

@@ -37,7 +37,7 @@ export class ToolsState {
   private activeTool: ToolState | null = null;
   private hintText = "";
   /** The ID of the tool that was active before the reload of the page. */
-  private activeBefore: string | null = null;
+  private previousActiveId: string | null = null;
 
   constructor(private readonly connection: Connection) {
     connection.on("tools", ({ tools, classes }) => this.setTools(tools, classes));
@@ -46,7 +46,7 @@ export class ToolsState {
 
   /** Preserves the choice of the active tool across reloads of the page. */
   preserveIn(memory: PageMemory): void {
-    memory.preserve("tool", () => this.activeTool?.id ?? null, (id) => (this.activeBefore = id));
+    memory.preserve("tool", () => this.activeTool?.id ?? null, (id) => (this.previousActiveId = id));
   }
 
   get current(): ToolState | null {
@@ -70,7 +70,7 @@ export class ToolsState {
   }
 
   /** Activates a tool. */
-  choose(tool: ToolState | null): void {
+  activate(tool: ToolState | null): void {
     if (tool === this.activeTool || tool?.isSupported === false) return;
     this.activeTool = tool;
     this.currentChanged.emit(tool);
@@ -78,7 +78,7 @@ export class ToolsState {
 
   /** Activates a tool, or the default tool if it is active already. */
   toggle(tool: ToolState): void {
-    this.choose(tool === this.activeTool ? this.default : tool);
+    this.activate(tool === this.activeTool ? this.default : tool);
   }
 
   setProperty(id: string, value: PropertyValue): void {
@@ -95,10 +95,10 @@ export class ToolsState {
   }
 
   private setTools(tools: readonly Tool[], classes: readonly ToolClass[]): void {
-    const previous = this.activeTool?.id ?? this.activeBefore;
+    const previousId = this.activeTool?.id ?? this.previousActiveId;
     this.tools = tools.map((tool) => new ToolState(tool));
     this.classes = classes;
-    this.activeTool = this.tools.find((tool) => tool.id === previous && tool.isSupported) ?? this.default;
+    this.activeTool = this.tools.find((tool) => tool.id === previousId && tool.isSupported) ?? this.default;
     this.listChanged.emit();
     this.currentChanged.emit(this.activeTool);
   }

@@ -3,17 +3,17 @@ import type { Property, PropertyValue, SavedView, View, ViewClass } from "../pro
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
 import type { PageMemory } from "./page-memory";
-import { transformToFixed, transformToTarget, FIXED, transformPointToTarget, type Camera, type Target, type ViewSize } from "./views/camera";
+import { transformToFixed, transformToTarget, FIXED_TARGET, transformPointToTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { contains, transformBounds } from "./views/fit";
+import { containsBounds, transformBounds } from "./views/fit";
 import { distanceBetween, type Bounds, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
 export const FIXED_FRAME = "<Fixed Frame>";
-const ORBIT = "rviz_default_plugins/Orbit";
-const TOP_DOWN = "rviz_default_plugins/TopDownOrtho";
-const CURRENT_NAME = "Current View";
-const TARGET_FRAME = "Target Frame";
+const ORBIT_CLASS = "rviz_default_plugins/Orbit";
+const TOP_DOWN_CLASS = "rviz_default_plugins/TopDownOrtho";
+const CURRENT_VIEW_NAME = "Current View";
+const TARGET_FRAME_PATH = "Target Frame";
 const ANNOUNCE_INTERVAL_MS = 250;
 
 /**
@@ -26,21 +26,21 @@ export class ViewState {
   readonly listsChanged = new Signal();
   classes: readonly ViewClass[] = [];
   savedViews: readonly SavedView[] = [];
-  private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
+  private view: View = { cls: ORBIT_CLASS, name: CURRENT_VIEW_NAME, values: controllerOf(ORBIT_CLASS).zero() };
   private configuredView: View | null = null;
   private showsWholeRobot = false;
   /** The content for which the camera was last placed automatically; null once the user has placed it. */
-  private fittedTarget: { readonly target: string; readonly box: Bounds | null } | null = null;
+  private fittedContent: { readonly target: string; readonly box: Bounds | null } | null = null;
   /**
    * The map that the camera was fitted to, if a file placed the camera and the user has not moved it; "" for none yet,
    * null once the user has moved it.
    */
-  private framedMap: string | null = null;
+  private fittedMap: string | null = null;
   private revision: number | null = null;
   private reportedRevision: number | null = null;
   /** Whether a restarted program needs the size of the robots, even if the camera stays. */
   private needsSize = false;
-  private lastTarget: Target = FIXED;
+  private lastTarget: Target = FIXED_TARGET;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
@@ -80,10 +80,10 @@ export class ViewState {
    * in RViz.
    */
   get target(): Target {
-    const name = this.view.values[TARGET_FRAME];
-    if (typeof name !== "string" || name === FIXED_FRAME) return FIXED;
+    const name = this.view.values[TARGET_FRAME_PATH];
+    if (typeof name !== "string" || name === FIXED_FRAME) return FIXED_TARGET;
     const row = this.frames.rowOf(name);
-    if (this.frames.has(row)) {
+    if (this.frames.hasPose(row)) {
       const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = this.frames.poses.subarray(row * 7, row * 7 + 7);
       const yaw = Math.atan2(2 * (qx * qy + qw * qz), qw * qw + qx * qx - qy * qy - qz * qz);
       this.lastTarget = { position: [x, y, z], yaw: this.controller.followsYaw ? yaw : 0 };
@@ -103,20 +103,20 @@ export class ViewState {
   /**
    * Returns whether the user has not placed the camera, and the content differs from that for which it was last placed.
    */
-  awaitsFit(target: string): boolean {
-    return this.fittedTarget !== null && target !== this.fittedTarget.target;
+  awaitsFit(contentId: string): boolean {
+    return this.fittedContent !== null && contentId !== this.fittedContent.target;
   }
 
   /** Preserves the camera across reloads of the page. */
   preserveIn(memory: PageMemory): void {
-    const readState = () => ({ view: this.view, revision: this.revision, fittedTarget: this.fittedTarget });
+    const readState = () => ({ view: this.view, revision: this.revision, fittedContent: this.fittedContent });
     memory.preserve("view", readState, (state: ReturnType<typeof readState>) => Object.assign(this, state));
   }
 
   /** Handles a restart of the program; if it shows other content, the camera starts from its default again. */
-  onProgramRestarted(isSame: boolean): void {
+  onProgramRestarted(isSameContent: boolean): void {
     this.needsSize = true;
-    if (!isSame) this.revision = null;
+    if (!isSameContent) this.revision = null;
   }
 
   /** Whether the server needs the size of the robots although the camera stays. */
@@ -126,13 +126,13 @@ export class ViewState {
 
   /** Fits the robots into view once they are loaded. */
   lookAtRobots(): void {
-    this.awaitFirstLook(true);
+    this.setAwaitingFirstFit(true);
   }
 
   /** Keeps the camera in place from now on, because the user works with the view. */
   keepCamera(): void {
-    this.fittedTarget = null;
-    this.framedMap = null;
+    this.fittedContent = null;
+    this.fittedMap = null;
   }
 
   /** Fits a box in the fixed frame into view from the current direction, in a canvas of this size. */
@@ -141,24 +141,24 @@ export class ViewState {
   }
 
   /** Fits a box into view if the user has not placed the camera, and again when the box has grown. */
-  fitFirst(box: Bounds, size: ViewSize, target: string): void {
-    const previousBox = this.fittedTarget?.box;
-    if (!previousBox || !contains(previousBox, box)) this.update(this.fitValues(box, size));
-    this.fittedTarget = { target, box: previousBox && contains(previousBox, box) ? previousBox : box };
+  fitFirst(box: Bounds, size: ViewSize, contentId: string): void {
+    const previousBox = this.fittedContent?.box;
+    if (!previousBox || !containsBounds(previousBox, box)) this.update(this.fitValues(box, size));
+    this.fittedContent = { target: contentId, box: previousBox && containsBounds(previousBox, box) ? previousBox : box };
   }
 
   /**
    * Returns whether a file placed the camera above a map, the user has not moved it, and it does not show the whole of
    * this map yet.
    */
-  awaitsMap(map: string): boolean {
-    return this.view.cls === TOP_DOWN && this.framedMap !== null && this.framedMap !== map;
+  awaitsMapFit(map: string): boolean {
+    return this.view.cls === TOP_DOWN_CLASS && this.fittedMap !== null && this.fittedMap !== map;
   }
 
   /** Fits a map into view, without changing the view of the file. */
-  frameMap(box: Bounds, size: ViewSize, map: string): void {
-    this.framedMap = map;
-    this.view = { ...this.view, values: { ...this.values, ...this.clampToBounds(TOP_DOWN, this.fitValues(box, size)) } };
+  fitMap(box: Bounds, size: ViewSize, map: string): void {
+    this.fittedMap = map;
+    this.view = { ...this.view, values: { ...this.values, ...this.clampToBounds(TOP_DOWN_CLASS, this.fitValues(box, size)) } };
     this.changed.emit();
   }
 
@@ -167,7 +167,7 @@ export class ViewState {
    * moved the camera or the program was restarted.
    */
   reportSize({ min, max }: Bounds, ground: number): void {
-    if (!this.needsSize && (this.fittedTarget === null || this.reportedRevision === this.revision)) return;
+    if (!this.needsSize && (this.fittedContent === null || this.reportedRevision === this.revision)) return;
     this.needsSize = false;
     this.reportedRevision = this.revision;
     this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max), ground });
@@ -176,9 +176,9 @@ export class ViewState {
   /**
    * Sets the values of a camera that the user has not placed; unless `isLast`, it is placed again for further content.
    */
-  proposeValues(values: ViewValues, target: string, isLast: boolean): void {
+  proposeValues(values: ViewValues, contentId: string, isLast: boolean): void {
     this.update(values);
-    if (!isLast) this.fittedTarget = { target, box: null };
+    if (!isLast) this.fittedContent = { target: contentId, box: null };
   }
 
   /** Sets values, limited to the bounds of their properties. */
@@ -191,7 +191,7 @@ export class ViewState {
   }
 
   /** Handles the wheel; `delta` is 120 per notch, positive away from the user. */
-  wheel(delta: number, isShiftDown: boolean): void {
+  handleWheel(delta: number, isShiftDown: boolean): void {
     this.update(this.controller.applyWheel(this.view.values, delta, isShiftDown));
   }
 
@@ -204,24 +204,24 @@ export class ViewState {
   setClass(cls: string): void {
     if (cls === this.view.cls) return;
     const previousView = this.view;
-    const inFixed = this.camera;
+    const cameraInFixedFrame = this.camera;
     const defaults = this.defaultsOf(cls);
-    const targetFrame = previousView.values[TARGET_FRAME];
-    this.view = { ...previousView, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME]: targetFrame } };
-    const camera = transformToTarget(inFixed, this.target);
+    const targetFrame = previousView.values[TARGET_FRAME_PATH];
+    this.view = { ...previousView, cls, values: targetFrame === undefined ? defaults : { ...defaults, [TARGET_FRAME_PATH]: targetFrame } };
+    const camera = transformToTarget(cameraInFixedFrame, this.target);
     this.update(this.controller.mimic({ cls: previousView.cls, values: previousView.values, camera }));
   }
 
   /** Follows another frame without moving the camera. */
   setTargetFrame(name: string): void {
     const previousTarget = this.target;
-    this.view = { ...this.view, values: { ...this.view.values, [TARGET_FRAME]: name } };
+    this.view = { ...this.view, values: { ...this.view.values, [TARGET_FRAME_PATH]: name } };
     this.update(this.controller.retarget(this.view.values, previousTarget, this.target));
   }
 
   /** Sets a property as its row in the Views panel does. */
-  set(path: string, value: PropertyValue): void {
-    if (path === TARGET_FRAME) this.setTargetFrame(String(value));
+  setProperty(path: string, value: PropertyValue): void {
+    if (path === TARGET_FRAME_PATH) this.setTargetFrame(String(value));
     else this.update({ [path]: value });
   }
 
@@ -234,30 +234,28 @@ export class ViewState {
   reset(): void {
     if (!this.configuredView) this.zero();
     else {
-      this.awaitFirstLook(this.showsWholeRobot);
-      this.show(copyOf(this.configuredView));
+      this.setAwaitingFirstFit(this.showsWholeRobot);
+      this.setView(copyView(this.configuredView));
     }
   }
 
-  // --- saved views -----------------------------------------------------------------------------------------------
-
   /** Adds the current view to the saved ones. */
   save(name: string): void {
-    this.connection.send({ type: "save_view", view: { ...copyOf(this.view), name } });
+    this.connection.send({ type: "save_view", view: { ...copyView(this.view), name } });
   }
 
   /** Applies a saved view. */
-  use(id: string): void {
+  applySaved(id: string): void {
     const savedView = this.savedViews.find((candidate) => candidate.id === id);
-    if (savedView) this.change({ ...copyOf(savedView.view), name: CURRENT_NAME });
+    if (savedView) this.change({ ...copyView(savedView.view), name: CURRENT_VIEW_NAME });
   }
 
   rename(id: string, name: string): void {
     const savedView = this.savedViews.find((candidate) => candidate.id === id);
-    if (savedView && name.trim() !== "") this.changeSaved(id, { ...copyOf(savedView.view), name: name.trim() });
+    if (savedView && name.trim() !== "") this.changeSaved(id, { ...copyView(savedView.view), name: name.trim() });
   }
 
-  setSaved(id: string, path: string, value: PropertyValue): void {
+  setSavedValue(id: string, path: string, value: PropertyValue): void {
     const savedView = this.savedViews.find((candidate) => candidate.id === id);
     if (!savedView) return;
     const { cls, values } = savedView.view;
@@ -268,8 +266,6 @@ export class ViewState {
     this.connection.send({ type: "remove_saved_view", id });
   }
 
-  // --------------------------------------------------------------------------------------------------------------
-
   /** Applies the view of a configuration once: a reconnect does not move the user's camera, but another file does. */
   private configure(view: View, revision: number, showsWholeRobot: boolean): void {
     const isCurrent = this.revision === revision;
@@ -277,14 +273,14 @@ export class ViewState {
     this.revision = revision;
     this.showsWholeRobot = showsWholeRobot;
     if (isCurrent) return;
-    this.awaitFirstLook(showsWholeRobot);
-    this.view = copyOf(view);
+    this.setAwaitingFirstFit(showsWholeRobot);
+    this.view = copyView(view);
     this.changed.emit();
   }
 
-  private awaitFirstLook(isAwaiting: boolean): void {
-    this.fittedTarget = isAwaiting ? { target: "", box: null } : null;
-    this.framedMap = "";
+  private setAwaitingFirstFit(isAwaiting: boolean): void {
+    this.fittedContent = isAwaiting ? { target: "", box: null } : null;
+    this.fittedMap = "";
   }
 
   private fitValues(box: Bounds, size: ViewSize): ViewValues {
@@ -292,17 +288,17 @@ export class ViewState {
   }
 
   private change(view: View): void {
-    this.fittedTarget = null;
-    this.framedMap = null;
-    this.show(view);
+    this.fittedContent = null;
+    this.fittedMap = null;
+    this.setView(view);
   }
 
-  private show(view: View): void {
+  private setView(view: View): void {
     this.view = view;
     this.changed.emit();
     this.timer ??= setTimeout(() => {
       this.timer = undefined;
-      this.connection.send({ type: "view_changed", view: copyOf(this.view) });
+      this.connection.send({ type: "view_changed", view: copyView(this.view) });
     }, ANNOUNCE_INTERVAL_MS);
   }
 
@@ -315,26 +311,26 @@ export class ViewState {
   }
 
   private clampToBounds(cls: string, values: ViewValues): ViewValues {
-    const result: Record<string, PropertyValue> = {};
+    const clampedValues: Record<string, PropertyValue> = {};
     for (const [path, value] of Object.entries(values)) {
-      const property = find(this.propertiesOf(cls), path);
-      if (typeof value !== "number") result[path] = value;
+      const property = findProperty(this.propertiesOf(cls), path);
+      if (typeof value !== "number") clampedValues[path] = value;
       else if (Number.isFinite(value)) {
-        result[path] = Math.min(Math.max(value, property?.minimum ?? -Infinity), property?.maximum ?? Infinity);
+        clampedValues[path] = Math.min(Math.max(value, property?.minimum ?? -Infinity), property?.maximum ?? Infinity);
       }
     }
-    return result;
+    return clampedValues;
   }
 }
 
-function copyOf(view: View): View {
+function copyView(view: View): View {
   return { ...view, values: { ...view.values } };
 }
 
-function find(properties: readonly Property[], id: string): Property | undefined {
+function findProperty(properties: readonly Property[], id: string): Property | undefined {
   for (const property of properties) {
     if (property.id === id) return property;
-    const match = find(property.children, id);
+    const match = findProperty(property.children, id);
     if (match) return match;
   }
   return undefined;

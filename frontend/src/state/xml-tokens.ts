@@ -10,8 +10,8 @@ export interface Token {
 export type LineState = "text" | "tag" | "comment" | "cdata" | "instruction" | '"' | "'";
 
 /** Constructs that may span lines, with their ends and their openings. */
-const ENDS: Readonly<Partial<Record<LineState, string>>> = { comment: "-->", cdata: "]]>", instruction: "?>" };
-const OPENINGS: readonly (readonly [string, LineState])[] = [
+const END_MARKERS: Readonly<Partial<Record<LineState, string>>> = { comment: "-->", cdata: "]]>", instruction: "?>" };
+const OPENING_MARKERS: readonly (readonly [string, LineState])[] = [
   ["<!--", "comment"],
   ["<![CDATA[", "cdata"],
   ["<?", "instruction"],
@@ -55,7 +55,7 @@ class Scanner {
 
   run(): void {
     while (this.remainingText !== "") {
-      const end = ENDS[this.state];
+      const end = END_MARKERS[this.state];
       if (end !== undefined) this.readUntil(end);
       else if (this.state === '"' || this.state === "'") this.readValue(this.state);
       else if (this.state === "tag") this.readTagPart();
@@ -96,7 +96,7 @@ class Scanner {
     const index = this.remainingText.indexOf("<");
     this.pushMixed("text", index < 0 ? this.remainingText.length : index);
     if (index < 0) return;
-    const opening = OPENINGS.find(([text]) => this.remainingText.startsWith(text));
+    const opening = OPENING_MARKERS.find(([text]) => this.remainingText.startsWith(text));
     if (opening) {
       this.state = opening[1];
       return;

@@ -4,7 +4,7 @@ export function formatColor(hex: string): string {
   if (!match) return hex;
   return match
     .slice(1)
-    .map((part) => parseInt(part, 16))
+    .map((channel) => parseInt(channel, 16))
     .join("; ");
 }
 
@@ -12,7 +12,7 @@ export function formatColor(hex: string): string {
 export function parseColor(text: string): string | null {
   const color = text.trim();
   if (/^#[0-9a-f]{6}$/i.test(color)) return color.toLowerCase();
-  const parts = color.split(/[\s;,]+/).map(Number);
-  if (parts.length !== 3 || parts.some((part) => !Number.isInteger(part) || part < 0 || part > 255)) return null;
-  return `#${parts.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
+  const channels = color.split(/[\s;,]+/).map(Number);
+  if (channels.length !== 3 || channels.some((channel) => !Number.isInteger(channel) || channel < 0 || channel > 255)) return null;
+  return `#${channels.map((channel) => channel.toString(16).padStart(2, "0")).join("")}`;
 }

@@ -13,11 +13,11 @@ export class ColumnSplitter {
       event.preventDefault();
     });
     this.element.addEventListener("pointermove", (event) => {
-      const box = this.element.parentElement;
-      if (!box || !this.element.hasPointerCapture(event.pointerId)) return;
-      const { left, width } = box.getBoundingClientRect();
+      const container = this.element.parentElement;
+      if (!container || !this.element.hasPointerCapture(event.pointerId)) return;
+      const { left, width } = container.getBoundingClientRect();
       const share = Math.min(MAX_SHARE, Math.max(MIN_SHARE, (event.clientX - left) / width));
-      box.style.setProperty("--names", `${(share * 100).toFixed(1)}%`);
+      container.style.setProperty("--names", `${(share * 100).toFixed(1)}%`);
     });
   }
 }

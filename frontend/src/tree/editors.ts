@@ -11,12 +11,12 @@ import type { Editor, TreeItem } from "./tree-item";
 export function createEditor(item: TreeItem, getItem: () => TreeItem, getFrames: () => readonly string[]): Editor {
   const commit = (value: PropertyValue): void => getItem().set?.(value);
   if (item.kind === "group") return new PlainText();
-  if (item.isReadOnly === true || !item.set) return item.kind === "bool" ? new CheckBox(commit) : new PlainText();
+  if (item.isReadOnly === true || !item.set) return item.kind === "bool" ? new CheckBoxEditor(commit) : new PlainText();
   switch (item.kind) {
     case "bool":
-      return new CheckBox(commit);
+      return new CheckBoxEditor(commit);
     case "enum":
-      return new Choice(commit);
+      return new ChoiceEditor(commit);
     case "color":
       return new ColorEditor(commit);
     case "frame":
@@ -75,7 +75,7 @@ class PlainText implements Editor {
   }
 }
 
-class CheckBox implements Editor {
+class CheckBoxEditor implements Editor {
   readonly element = h("input", { class: "check" });
 
   constructor(private readonly commit: (value: PropertyValue) => void) {
@@ -101,7 +101,7 @@ class CheckBox implements Editor {
   }
 }
 
-class Choice implements Editor {
+class ChoiceEditor implements Editor {
   readonly element = h("select", { class: "choice" });
   private optionsKey = "";
 
@@ -130,22 +130,22 @@ class Choice implements Editor {
 class ColorEditor implements Editor {
   readonly element: HTMLElement;
   private readonly swatch = h("input", { class: "swatch", title: strings.tree.pickColor });
-  private readonly text: TextEditor;
+  private readonly textEditor: TextEditor;
 
   constructor(commit: (value: PropertyValue) => void) {
-    this.text = new TextEditor({ format: (value) => formatColor(String(value)), parse: parseColor, commit });
+    this.textEditor = new TextEditor({ format: (value) => formatColor(String(value)), parse: parseColor, commit });
     this.swatch.type = "color";
     this.swatch.tabIndex = -1;
     this.swatch.addEventListener("input", () => commit(this.swatch.value));
-    this.element = h("span", { class: "color-editor" }, this.swatch, this.text.element);
+    this.element = h("span", { class: "color-editor" }, this.swatch, this.textEditor.element);
   }
 
   show(item: TreeItem): void {
     this.swatch.value = String(item.value);
-    this.text.show(item);
+    this.textEditor.show(item);
   }
 
   focus(): boolean {
-    return this.text.focus();
+    return this.textEditor.focus();
   }
 }

@@ -1,32 +1,32 @@
-import { button, h } from "../dom";
-import { icon } from "../icons";
+import { createButton, h } from "../dom";
+import { createIcon } from "../icons";
 import type { PropertyValue } from "../protocol";
 import { strings } from "../strings";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
 /** Passes the names to choose from to `show`, immediately or when they have arrived. */
-export type Offer = (item: TreeItem, show: (names: readonly string[]) => void) => void;
+export type OfferNames = (item: TreeItem, show: (names: readonly string[]) => void) => void;
 
 /** An editor for the name of a frame or topic: any text, or a name from a list. */
 export class NameEditor implements Editor {
   readonly element: HTMLElement;
-  private readonly text: TextEditor;
+  private readonly textEditor: TextEditor;
   private list: HTMLElement | null = null;
   private item: TreeItem | null = null;
 
   constructor(
     private readonly commit: (value: PropertyValue) => void,
     private readonly label: string,
-    private readonly offer: Offer,
+    private readonly offer: OfferNames,
     allowsEmpty = false,
   ) {
     const parse = (text: string): string | null => text.trim() || (allowsEmpty ? "" : null);
-    this.text = new TextEditor({ format: String, parse, commit });
-    const openButton = button(label, () => this.toggleList(), "drop", icon("chevron"));
+    this.textEditor = new TextEditor({ format: String, parse, commit });
+    const openButton = createButton(label, () => this.toggleList(), "drop", createIcon("chevron"));
     openButton.tabIndex = -1;
-    this.element = h("span", { class: "frame-editor" }, this.text.element, openButton);
-    this.text.element.addEventListener("keydown", (event) => {
+    this.element = h("span", { class: "frame-editor" }, this.textEditor.element, openButton);
+    this.textEditor.element.addEventListener("keydown", (event) => {
       if (event.key === "ArrowDown") {
         this.open();
         event.stopPropagation();
@@ -36,11 +36,11 @@ export class NameEditor implements Editor {
 
   show(item: TreeItem): void {
     this.item = item;
-    this.text.show(item);
+    this.textEditor.show(item);
   }
 
   focus(): boolean {
-    return this.text.focus();
+    return this.textEditor.focus();
   }
 
   private toggleList(): void {
@@ -66,15 +66,15 @@ export class NameEditor implements Editor {
     this.list.addEventListener("focusout", (event) => {
       if (!this.list?.contains(event.relatedTarget as Node | null)) this.close();
     });
-    const box = this.element.getBoundingClientRect();
-    this.list.style.left = `${box.left}px`;
-    this.list.style.minWidth = `${box.width}px`;
+    const editorRect = this.element.getBoundingClientRect();
+    this.list.style.left = `${editorRect.left}px`;
+    this.list.style.minWidth = `${editorRect.width}px`;
     document.body.append(this.list);
-    const spaceBelow = window.innerHeight - box.bottom;
-    if (spaceBelow < this.list.offsetHeight + 8 && box.top > spaceBelow) this.list.style.bottom = `${window.innerHeight - box.top}px`;
-    else this.list.style.top = `${box.bottom}px`;
-    const current = entries.find((entry) => entry.dataset["name"] === this.item?.value);
-    (current ?? (this.list.firstElementChild as HTMLElement | null))?.focus();
+    const spaceBelow = window.innerHeight - editorRect.bottom;
+    if (spaceBelow < this.list.offsetHeight + 8 && editorRect.top > spaceBelow) this.list.style.bottom = `${window.innerHeight - editorRect.top}px`;
+    else this.list.style.top = `${editorRect.bottom}px`;
+    const currentEntry = entries.find((entry) => entry.dataset["name"] === this.item?.value);
+    (currentEntry ?? (this.list.firstElementChild as HTMLElement | null))?.focus();
   }
 
   private close(): void {
@@ -97,7 +97,7 @@ export class NameEditor implements Editor {
     else if (event.key === "Enter" || event.key === " ") this.choose(entry);
     else if (event.key === "Escape") {
       this.close();
-      this.text.focus();
+      this.textEditor.focus();
     } else return;
     event.preventDefault();
     event.stopPropagation();

@@ -10,8 +10,8 @@ export function formatNumber(value: number): string {
 
 /** Returns `1; 2; 3` with five digits for the largest number, as in RViz, and as many decimals for the others. */
 export function formatPoint(values: readonly number[]): string {
-  const largest = Math.max(...values.map(Math.abs));
-  const digits = largest > 0 ? Math.min(Math.max(4 - Math.floor(Math.log10(largest)), 0), 12) : 0;
+  const maxMagnitude = Math.max(...values.map(Math.abs));
+  const digits = maxMagnitude > 0 ? Math.min(Math.max(4 - Math.floor(Math.log10(maxMagnitude)), 0), 12) : 0;
   return values.map((value) => formatNumber(Number(value.toFixed(digits)))).join("; ");
 }
 
@@ -27,9 +27,9 @@ export function formatFixed(value: number, digits: number): string {
 
 /** Parses a number that a user typed, with a point or a comma; returns null if it is not a number. */
 export function parseNumber(text: string): number | null {
-  const number = text.trim().replace(",", ".");
-  if (number === "") return null;
-  const value = Number(number);
+  const normalized = text.trim().replace(",", ".");
+  if (normalized === "") return null;
+  const value = Number(normalized);
   return Number.isFinite(value) ? value : null;
 }
 
@@ -42,6 +42,6 @@ export function clamp(value: number, minimum: number | null, maximum: number | n
 /** Returns the step of an arrow key for a number, by its magnitude; 1 for integers. */
 export function chooseStep(value: number, isInteger: boolean): number {
   if (isInteger) return 1;
-  const size = Math.abs(value);
-  return size < 0.1 ? 0.01 : 10 ** (Math.floor(Math.log10(size)) - 1);
+  const magnitude = Math.abs(value);
+  return magnitude < 0.1 ? 0.01 : 10 ** (Math.floor(Math.log10(magnitude)) - 1);
 }

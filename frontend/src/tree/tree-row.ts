@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import { icon, LEVEL_ICONS } from "../icons";
+import { createIcon, LEVEL_ICONS } from "../icons";
 import { createEditor } from "./editors";
 import type { Editor, TreeItem } from "./tree-item";
 
@@ -7,11 +7,11 @@ import type { Editor, TreeItem } from "./tree-item";
 export class TreeRow {
   readonly element: HTMLElement;
   readonly editor: Editor;
-  private readonly toggleSign = h("span", { class: "twist" }, icon("chevron"));
-  private readonly signs = h("span", { class: "signs" });
+  private readonly foldToggle = h("span", { class: "twist" }, createIcon("chevron"));
+  private readonly icons = h("span", { class: "signs" });
   private readonly title = h("span", { class: "row-title" });
   private readonly badge = h("span", { class: "row-badge" });
-  private signKey = "";
+  private iconsKey = "";
 
   constructor(
     public item: TreeItem,
@@ -19,7 +19,7 @@ export class TreeRow {
     getFrames: () => readonly string[],
   ) {
     this.editor = createEditor(item, () => this.item, getFrames);
-    const name = h("div", { class: "row-name" }, this.toggleSign, this.signs, this.title, this.badge);
+    const name = h("div", { class: "row-name" }, this.foldToggle, this.icons, this.title, this.badge);
     name.style.paddingLeft = `${6 + depth * 14}px`;
     const value = h("div", { class: "row-value" }, this.editor.element);
     this.element = h("div", { class: "row", role: "treeitem", tabIndex: -1, data: { key: item.key } }, name, value);
@@ -34,7 +34,7 @@ export class TreeRow {
     classList.toggle("wide", item.isWide === true);
     classList.toggle("warn", item.level === "warn");
     classList.toggle("error", item.level === "error");
-    this.toggleSign.classList.toggle("leaf", !item.children);
+    this.foldToggle.classList.toggle("leaf", !item.children);
     if (item.children) this.element.setAttribute("aria-expanded", String(isExpanded));
     else this.element.removeAttribute("aria-expanded");
     if (this.title.textContent !== item.name) this.title.textContent = item.name;
@@ -42,7 +42,7 @@ export class TreeRow {
     if (this.title.title !== hint) this.title.title = hint;
     const badge = item.badge ?? "";
     if (this.badge.textContent !== badge) this.badge.textContent = badge;
-    this.showSigns(item);
+    this.showIcons(item);
     this.editor.show(item);
   }
 
@@ -52,19 +52,19 @@ export class TreeRow {
     return this.item.kind === item.kind && this.depth === depth && isEditable(this.item) === isEditable(item);
   }
 
-  set selected(selected: boolean) {
+  set isSelected(selected: boolean) {
     this.element.classList.toggle("selected", selected);
     this.element.setAttribute("aria-selected", String(selected));
     this.element.tabIndex = selected ? 0 : -1;
   }
 
-  private showSigns(item: TreeItem): void {
+  private showIcons(item: TreeItem): void {
     const level = item.showsLevelIcon === true && item.level ? item.level : "";
     const key = `${item.icon ?? ""} ${level}`;
-    if (key === this.signKey) return;
-    this.signKey = key;
-    this.signs.replaceChildren();
-    if (item.icon) this.signs.append(icon(item.icon));
-    if (level) this.signs.append(icon(LEVEL_ICONS[level], `level-${level}`));
+    if (key === this.iconsKey) return;
+    this.iconsKey = key;
+    this.icons.replaceChildren();
+    if (item.icon) this.icons.append(createIcon(item.icon));
+    if (level) this.icons.append(createIcon(LEVEL_ICONS[level], `level-${level}`));
   }
 }

@@ -20,7 +20,7 @@ export class TreeView {
   readonly refresh = coalesce(() => this.render());
   private readonly rows = new Map<string, TreeRow>();
   private readonly expansion = new Map<string, boolean>();
-  private lines: VisibleItem[] = [];
+  private visibleItems: VisibleItem[] = [];
   private selectedKey: string | null = null;
   /** The other selected rows, among those that permit a multiple selection. */
   private readonly otherSelectedKeys = new Set<string>();
@@ -43,7 +43,7 @@ export class TreeView {
     this.list.addEventListener("dblclick", (event) => this.onDoubleClick(event));
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.list.addEventListener("focusin", (event) => {
-      const key = keyOf(event.target);
+      const key = findRowKey(event.target);
       if (key !== null && !this.isSelected(key)) this.select(key);
     });
     this.refresh();
@@ -69,12 +69,12 @@ export class TreeView {
 
   /** Whether a visible row has a value that follows the scene. */
   get hasLiveRows(): boolean {
-    return this.lines.some(({ item }) => item.isLive);
+    return this.visibleItems.some(({ item }) => item.isLive);
   }
 
   /** Updates the values that follow the scene. */
   updateLiveRows(): void {
-    for (const { item } of this.lines) {
+    for (const { item } of this.visibleItems) {
       if (item.isLive) this.rows.get(item.key)?.editor.show(item);
     }
   }
@@ -99,39 +99,39 @@ export class TreeView {
 
   /** The keys of all selected rows, from the top. */
   get selections(): string[] {
-    return this.lines.map(({ item }) => item.key).filter((key) => this.isSelected(key));
+    return this.visibleItems.map(({ item }) => item.key).filter((key) => this.isSelected(key));
   }
 
   /** Returns the row that contains an event's target. */
   itemAt(target: EventTarget | null): { item: TreeItem; element: HTMLElement } | null {
-    const row = this.rows.get(keyOf(target) ?? "");
+    const row = this.rows.get(findRowKey(target) ?? "");
     return row ? { item: row.item, element: row.element } : null;
   }
 
   private render(): void {
-    const focusedIndex = this.lines.findIndex(({ item }) => this.rows.get(item.key)?.element === document.activeElement);
-    this.lines = [];
-    this.flatten(this.getItems(), 0);
+    const focusedIndex = this.visibleItems.findIndex(({ item }) => this.rows.get(item.key)?.element === document.activeElement);
+    this.visibleItems = [];
+    this.collectVisibleItems(this.getItems(), 0);
     const visibleKeys = new Set<string>();
     const elements: HTMLElement[] = [];
-    for (const { item, depth, isExpanded } of this.lines) {
+    for (const { item, depth, isExpanded } of this.visibleItems) {
       let row = this.rows.get(item.key);
       if (!row?.canShow(item, depth)) {
         row = new TreeRow(item, depth, this.getFrames);
         this.rows.set(item.key, row);
       }
       row.show(item, isExpanded);
-      row.selected = this.isSelected(item.key);
+      row.isSelected = this.isSelected(item.key);
       visibleKeys.add(item.key);
       elements.push(row.element);
     }
     for (const key of this.rows.keys()) if (!visibleKeys.has(key)) this.rows.delete(key);
     setChildren(this.list, elements);
-    const [first] = elements;
-    if (first && (this.selectedKey === null || !visibleKeys.has(this.selectedKey))) first.tabIndex = 0;
+    const [firstElement] = elements;
+    if (firstElement && (this.selectedKey === null || !visibleKeys.has(this.selectedKey))) firstElement.tabIndex = 0;
     // If the focused row was removed, the row in its place gets the focus.
     if (focusedIndex >= 0 && !this.list.contains(document.activeElement)) {
-      this.focusLine(Math.min(focusedIndex, this.lines.length - 1));
+      this.focusItem(Math.min(focusedIndex, this.visibleItems.length - 1));
     }
     this.finishReveal();
   }
@@ -145,11 +145,11 @@ export class TreeView {
     row?.element.scrollIntoView({ block: "nearest" });
   }
 
-  private flatten(items: readonly TreeItem[], depth: number): void {
+  private collectVisibleItems(items: readonly TreeItem[], depth: number): void {
     for (const item of items) {
       const isExpanded = item.children !== undefined && this.isExpanded(item);
-      this.lines.push({ item, depth, isExpanded });
-      if (isExpanded) this.flatten(item.children(), depth + 1);
+      this.visibleItems.push({ item, depth, isExpanded });
+      if (isExpanded) this.collectVisibleItems(item.children(), depth + 1);
     }
   }
 
@@ -181,7 +181,7 @@ export class TreeView {
   }
 
   private showSelection(): void {
-    for (const [key, row] of this.rows) row.selected = this.isSelected(key);
+    for (const [key, row] of this.rows) row.isSelected = this.isSelected(key);
   }
 
   private isMultiSelectable(key: string): boolean {
@@ -189,22 +189,22 @@ export class TreeView {
   }
 
   /** Adds a row to the selection, or removes it, on Ctrl+click. */
-  private toggle(key: string): void {
+  private toggleSelection(key: string): void {
     if (key !== this.selectedKey && !this.otherSelectedKeys.delete(key)) this.select(key, true);
     else if (key === this.selectedKey && this.otherSelectedKeys.size > 0) {
-      const [nextKey = key] = this.otherSelectedKeys;
-      this.otherSelectedKeys.delete(nextKey);
-      this.selectedKey = nextKey;
+      const [nextChild = key] = this.otherSelectedKeys;
+      this.otherSelectedKeys.delete(nextChild);
+      this.selectedKey = nextChild;
     }
     this.showSelection();
   }
 
   /** Selects all rows from the selected one to this one, on Shift+click. */
   private extendSelection(key: string): void {
-    const [start, end] = [this.selectedKey, key].map((rowKey) => this.lines.findIndex(({ item }) => item.key === rowKey));
+    const [start, end] = [this.selectedKey, key].map((rowKey) => this.visibleItems.findIndex(({ item }) => item.key === rowKey));
     if (start === undefined || end === undefined || start < 0) return;
     this.otherSelectedKeys.clear();
-    for (const { item } of this.lines.slice(Math.min(start, end), Math.max(start, end) + 1)) {
+    for (const { item } of this.visibleItems.slice(Math.min(start, end), Math.max(start, end) + 1)) {
       if (item.isMultiSelectable === true && item.key !== this.selectedKey) this.otherSelectedKeys.add(item.key);
     }
     this.showSelection();
@@ -212,18 +212,18 @@ export class TreeView {
 
   /** Adds the next row to the selection and focuses it, on Shift and an arrow key. */
   private extendByKey(index: number, step: number): void {
-    let lineIndex = index + step;
-    while (this.lines[lineIndex] && this.lines[lineIndex]?.item.isMultiSelectable !== true) lineIndex += step;
-    const key = this.lines[lineIndex]?.item.key;
+    let itemIndex = index + step;
+    while (this.visibleItems[itemIndex] && this.visibleItems[itemIndex]?.item.isMultiSelectable !== true) itemIndex += step;
+    const key = this.visibleItems[itemIndex]?.item.key;
     if (key === undefined) return;
     this.select(key, true);
     this.rows.get(key)?.element.focus();
   }
 
   /** Runs a change that reduces the space for rows; while a mouse button is pressed, after its release and click. */
-  runAfterRelease(act: () => void): void {
-    if (!this.isPressed) act();
-    else document.addEventListener("mouseup", () => setTimeout(act), { once: true });
+  runAfterRelease(action: () => void): void {
+    if (!this.isPressed) action();
+    else document.addEventListener("mouseup", () => setTimeout(action), { once: true });
   }
 
   /**
@@ -233,18 +233,18 @@ export class TreeView {
   private onMouseDown(event: MouseEvent): void {
     this.isPressed = true;
     document.addEventListener("mouseup", () => (this.isPressed = false), { once: true });
-    const key = keyOf(event.target);
+    const key = findRowKey(event.target);
     if (key === null || !this.isMultiSelectable(key)) return;
     if (addsToSelection(event) || (event.button === 2 && this.otherSelectedKeys.size > 0 && this.isSelected(key))) event.preventDefault();
   }
 
   private onClick(event: MouseEvent): void {
     const target = event.target as HTMLElement;
-    const row = this.rows.get(keyOf(target) ?? "");
+    const row = this.rows.get(findRowKey(target) ?? "");
     if (!row) return;
     if (addsToSelection(event) && row.item.isMultiSelectable === true && this.selectedKey !== null && this.isMultiSelectable(this.selectedKey)) {
       if (event.shiftKey) this.extendSelection(row.item.key);
-      else this.toggle(row.item.key);
+      else this.toggleSelection(row.item.key);
       return;
     }
     this.select(row.item.key);
@@ -255,7 +255,7 @@ export class TreeView {
 
   private onDoubleClick(event: MouseEvent): void {
     const target = event.target as HTMLElement;
-    const row = this.rows.get(keyOf(target) ?? "");
+    const row = this.rows.get(findRowKey(target) ?? "");
     if (!row || !target.closest(".row-name") || target.closest(".twist")) return;
     if (row.item.activate) row.item.activate();
     else {
@@ -264,29 +264,29 @@ export class TreeView {
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const index = this.lines.findIndex((line) => line.item.key === this.selectedKey);
-    const line = this.lines[index];
+    const index = this.visibleItems.findIndex((line) => line.item.key === this.selectedKey);
+    const line = this.visibleItems[index];
     const row = line && this.rows.get(line.item.key);
     if (!row || !(event.target as HTMLElement).matches("[role=treeitem], .check")) return;
     switch (event.key) {
       case "ArrowDown":
       case "ArrowUp":
         if (event.shiftKey) this.extendByKey(index, event.key === "ArrowDown" ? 1 : -1);
-        else this.focusLine(index + (event.key === "ArrowDown" ? 1 : -1));
+        else this.focusItem(index + (event.key === "ArrowDown" ? 1 : -1));
         break;
       case "Home":
-        this.focusLine(0);
+        this.focusItem(0);
         break;
       case "End":
-        this.focusLine(this.lines.length - 1);
+        this.focusItem(this.visibleItems.length - 1);
         break;
       case "ArrowRight":
-        if (line.isExpanded) this.focusLine(index + 1);
+        if (line.isExpanded) this.focusItem(index + 1);
         else this.setExpanded(line.item, true);
         break;
       case "ArrowLeft":
         if (line.isExpanded) this.setExpanded(line.item, false);
-        else this.focusLine(this.lines.findLastIndex((candidate, i) => i < index && candidate.depth < line.depth));
+        else this.focusItem(this.visibleItems.findLastIndex((candidate, i) => i < index && candidate.depth < line.depth));
         break;
       case " ":
         if (row.editor.toggle) row.editor.toggle();
@@ -303,8 +303,8 @@ export class TreeView {
     event.preventDefault();
   }
 
-  private focusLine(index: number): void {
-    const key = this.lines[index]?.item.key;
+  private focusItem(index: number): void {
+    const key = this.visibleItems[index]?.item.key;
     if (key === undefined) return;
     this.otherSelectedKeys.clear();
     this.rows.get(key)?.element.focus();
@@ -317,7 +317,7 @@ function addsToSelection(event: MouseEvent): boolean {
   return event.shiftKey || event.ctrlKey || event.metaKey;
 }
 
-function keyOf(target: EventTarget | null): string | null {
+function findRowKey(target: EventTarget | null): string | null {
   return (target as HTMLElement | null)?.closest<HTMLElement>(".row")?.dataset["key"] ?? null;
 }
 
@@ -325,9 +325,9 @@ function keyOf(target: EventTarget | null): string | null {
 function setChildren(parent: HTMLElement, elements: readonly HTMLElement[]): void {
   const elementSet = new Set<Element>(elements);
   for (const child of [...parent.children]) if (!elementSet.has(child)) child.remove();
-  let nextKey = parent.firstElementChild;
+  let nextChild = parent.firstElementChild;
   for (const element of elements) {
-    if (element === nextKey) nextKey = nextKey.nextElementSibling;
-    else parent.insertBefore(element, nextKey);
+    if (element === nextChild) nextChild = nextChild.nextElementSibling;
+    else parent.insertBefore(element, nextChild);
   }
 }

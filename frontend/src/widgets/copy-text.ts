@@ -10,15 +10,15 @@ export async function copyText(text: string): Promise<boolean> {
       () => false,
     );
   }
-  const box = document.createElement("textarea");
-  box.value = text;
-  box.style.position = "fixed";
-  box.style.opacity = "0";
-  document.body.append(box);
-  box.select();
+  const textarea = document.createElement("textarea");
+  textarea.value = text;
+  textarea.style.position = "fixed";
+  textarea.style.opacity = "0";
+  document.body.append(textarea);
+  textarea.select();
   // Only the deprecated function is available on such pages.
   // eslint-disable-next-line @typescript-eslint/no-deprecated
   const wasCopied = document.execCommand("copy");
-  box.remove();
+  textarea.remove();
   return wasCopied;
 }

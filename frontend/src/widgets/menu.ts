@@ -1,5 +1,5 @@
 import { h } from "../dom";
-import { icon, type IconName } from "../icons";
+import { createIcon, type IconName } from "../icons";
 
 export interface MenuEntry {
   label: string;
@@ -17,9 +17,9 @@ export interface MenuEntry {
 
 /** Opens a menu below `anchor`; arrows move, Enter runs, Escape or a click elsewhere closes. */
 export function openMenu(anchor: HTMLElement, entries: readonly MenuEntry[]): void {
-  const box = anchor.getBoundingClientRect();
+  const anchorRect = anchor.getBoundingClientRect();
   anchor.setAttribute("aria-expanded", "true");
-  showMenu(entries, { x: box.left, y: box.bottom + 4, bottom: box.top - 4 }, anchor, () => anchor.setAttribute("aria-expanded", "false"));
+  showMenu(entries, { x: anchorRect.left, y: anchorRect.bottom + 4, bottom: anchorRect.top - 4 }, anchor, () => anchor.setAttribute("aria-expanded", "false"));
 }
 
 /** Opens a menu at a position; the focus returns to `origin` when it closes. */
@@ -76,8 +76,8 @@ function createItem(entry: MenuEntry, close: () => void): HTMLLIElement {
   if (entry.isChecked !== undefined) item.setAttribute("aria-checked", String(entry.isChecked));
   if (entry.isDisabled === true) item.setAttribute("aria-disabled", "true");
   if (entry.hint !== undefined) item.title = entry.hint;
-  const sign = entry.isChecked === true ? icon("check") : entry.icon ? icon(entry.icon) : null;
-  item.append(h("span", { class: "menu-check" }, sign), h("span", { class: "menu-label" }, entry.label));
+  const entryIcon = entry.isChecked === true ? createIcon("check") : entry.icon ? createIcon(entry.icon) : null;
+  item.append(h("span", { class: "menu-check" }, entryIcon), h("span", { class: "menu-label" }, entry.label));
   if (entry.keys !== undefined) item.append(h("kbd", {}, entry.keys));
   item.addEventListener("click", () => {
     if (entry.isDisabled === true) return;

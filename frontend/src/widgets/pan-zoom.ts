@@ -44,7 +44,7 @@ export class PanZoom {
     return this.traveledPx >= MAX_CLICK_MOVE_PX;
   }
 
-  set(x: number, y: number, scale: number): void {
+  setView(x: number, y: number, scale: number): void {
     [this.x, this.y, this.zoom] = [x, y, Math.min(Math.max(scale, MIN_SCALE), MAX_SCALE)];
     this.onChanged(this.x, this.y, this.zoom);
   }
@@ -54,14 +54,14 @@ export class PanZoom {
     const { clientWidth, clientHeight } = this.element;
     const fittingScale = Math.min((clientWidth - 2 * margin) / width, (clientHeight - 2 * margin) / height);
     const scale = Math.min(1, Math.max(MIN_SCALE, fittingScale));
-    this.set((clientWidth - width * scale) / 2, Math.max(margin, (clientHeight - height * scale) / 2), scale);
+    this.setView((clientWidth - width * scale) / 2, Math.max(margin, (clientHeight - height * scale) / 2), scale);
   }
 
   /** Shows an image of this size with legible texts; if it is too large for that, `point` is centered. */
   showLegibly(width: number, height: number, textSize: number, point: readonly [number, number]): void {
     const { clientWidth, clientHeight } = this.element;
     const { x, y, scale } = computeLegibleView([width, height], [clientWidth, clientHeight], textSize, point);
-    this.set(x, y, scale);
+    this.setView(x, y, scale);
   }
 
   /** Scrolls a point of the image into view: to the center, if it is outside. */
@@ -69,20 +69,20 @@ export class PanZoom {
     const { clientWidth, clientHeight } = this.element;
     const [left, top] = [this.x + x * this.zoom, this.y + y * this.zoom];
     const isInside = left > margin && left < clientWidth - margin && top > margin && top < clientHeight - margin;
-    if (!isInside) this.set(clientWidth / 2 - x * this.zoom, clientHeight / 2 - y * this.zoom, this.zoom);
+    if (!isInside) this.setView(clientWidth / 2 - x * this.zoom, clientHeight / 2 - y * this.zoom, this.zoom);
   }
 
   zoomBy(factor: number, x = this.element.clientWidth / 2, y = this.element.clientHeight / 2): void {
     const zoom = Math.min(Math.max(this.zoom * factor, MIN_SCALE), MAX_SCALE);
     const actualFactor = zoom / this.zoom;
-    this.set(x - (x - this.x) * actualFactor, y - (y - this.y) * actualFactor, zoom);
+    this.setView(x - (x - this.x) * actualFactor, y - (y - this.y) * actualFactor, zoom);
   }
 
   private onWheel(event: WheelEvent): void {
     event.preventDefault();
-    const box = this.element.getBoundingClientRect();
-    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 40 : 1;
-    this.zoomBy(2 ** ((-event.deltaY * lines) / WHEEL_PX_PER_DOUBLING), event.clientX - box.left, event.clientY - box.top);
+    const elementRect = this.element.getBoundingClientRect();
+    const pxPerUnit = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 40 : 1;
+    this.zoomBy(2 ** ((-event.deltaY * pxPerUnit) / WHEEL_PX_PER_DOUBLING), event.clientX - elementRect.left, event.clientY - elementRect.top);
   }
 
   private onPointerDown(event: PointerEvent): void {
@@ -100,23 +100,23 @@ export class PanZoom {
     this.traveledPx += Math.hypot(dx, dy);
     if (this.wasDragged) this.element.setPointerCapture(event.pointerId);
     const count = this.pointers.size;
-    this.set(this.x + dx / count, this.y + dy / count, this.zoom);
+    this.setView(this.x + dx / count, this.y + dy / count, this.zoom);
     if (count > 1 && lastDistance > 0) {
-      const box = this.element.getBoundingClientRect();
-      this.zoomBy(this.measureFingerDistance() / lastDistance, event.clientX - box.left, event.clientY - box.top);
+      const elementRect = this.element.getBoundingClientRect();
+      this.zoomBy(this.measureFingerDistance() / lastDistance, event.clientX - elementRect.left, event.clientY - elementRect.top);
     }
   }
 
   /** Returns the distance between the first two fingers, px. */
   private measureFingerDistance(): number {
-    const [a, b] = [...this.pointers.values()];
-    return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
+    const [first, second] = [...this.pointers.values()];
+    return first && second ? Math.hypot(first.x - second.x, first.y - second.y) : 0;
   }
 
   private onKeyDown(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const move = (dx: number, dy: number): void => this.set(this.x + dx, this.y + dy, this.zoom);
-    const keys: Readonly<Record<string, () => void>> = {
+    const move = (dx: number, dy: number): void => this.setView(this.x + dx, this.y + dy, this.zoom);
+    const commands: Readonly<Record<string, () => void>> = {
       ArrowLeft: () => move(MOVE_STEP_PX, 0),
       ArrowRight: () => move(-MOVE_STEP_PX, 0),
       ArrowUp: () => move(0, MOVE_STEP_PX),
@@ -126,9 +126,9 @@ export class PanZoom {
       "-": () => this.zoomBy(1 / ZOOM_STEP),
       "0": this.fit,
     };
-    const runKey = keys[event.key];
-    if (!runKey) return;
-    runKey();
+    const runCommand = commands[event.key];
+    if (!runCommand) return;
+    runCommand();
     event.preventDefault();
     event.stopPropagation();
   }

@@ -5,7 +5,7 @@ const MAX_CLICK_MOVE_PX = 5;
  * Calls `close` on Escape, wherever the focus is, and on a click outside all `elements`, until the returned function is
  * called. `returnsFocus` is whether the focus should return to the element that opened the popover.
  */
-export function closeOutside(elements: readonly Element[], close: (returnsFocus: boolean) => void): () => void {
+export function closeOnOutsideClick(elements: readonly Element[], close: (returnsFocus: boolean) => void): () => void {
   let pressPoint: { x: number; y: number } | null = null;
   const isInside = ({ target }: Event): boolean => target instanceof Node && elements.some((element) => element.contains(target));
   const onPointerDown = (event: PointerEvent): void => {

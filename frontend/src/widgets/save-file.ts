@@ -6,12 +6,12 @@ export function saveText(name: string, text: string, type: string): void {
 /** Saves an image or a video as a file on the user's machine. */
 export function saveBlob(name: string, blob: Blob): void {
   const url = URL.createObjectURL(blob);
-  saveFrom(name, url);
+  saveFromUrl(name, url);
   URL.revokeObjectURL(url);
 }
 
 /** Downloads a file of the server and saves it on the user's machine. */
-export function saveFrom(name: string, url: string): void {
+export function saveFromUrl(name: string, url: string): void {
   const link = document.createElement("a");
   link.href = url;
   link.download = name;

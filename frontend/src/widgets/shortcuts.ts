@@ -10,7 +10,7 @@ const userAgent = (globalThis as { navigator?: Navigator }).navigator?.userAgent
 const IS_MAC = /Macintosh|iPhone|iPad/.test(userAgent);
 
 /** Returns whether an event matches a shortcut. */
-export function matches(event: KeyboardEvent, { key, mod = false, shift = false, alt = false }: Shortcut): boolean {
+export function matchesShortcut(event: KeyboardEvent, { key, mod = false, shift = false, alt = false }: Shortcut): boolean {
   const isModHeld = IS_MAC ? event.metaKey && !event.ctrlKey : event.ctrlKey && !event.metaKey;
   const hasNoModifier = !event.ctrlKey && !event.metaKey;
   // With Alt, some keyboards produce another letter: compare the position of the key.
@@ -18,11 +18,11 @@ export function matches(event: KeyboardEvent, { key, mod = false, shift = false,
   return isSameKey && (mod ? isModHeld : hasNoModifier) && event.shiftKey === shift && event.altKey === alt;
 }
 
-const NAMES: Readonly<Record<string, string>> = { Delete: "Del", Insert: "Ins", ArrowUp: "↑", ArrowDown: "↓" };
+const KEY_LABELS: Readonly<Record<string, string>> = { Delete: "Del", Insert: "Ins", ArrowUp: "↑", ArrowDown: "↓" };
 
 /** Returns the keys as labeled on the keyboard: `Ctrl+Shift+S`. */
 export function formatShortcut({ key, mod = false, shift = false, alt = false }: Shortcut): string {
-  const name = NAMES[key] ?? key.toUpperCase();
+  const name = KEY_LABELS[key] ?? key.toUpperCase();
   if (IS_MAC) return `${alt ? "⌥" : ""}${shift ? "⇧" : ""}${mod ? "⌘" : ""}${name}`;
   return [...(mod ? ["Ctrl"] : []), ...(alt ? ["Alt"] : []), ...(shift ? ["Shift"] : []), name].join("+");
 }

@@ -1,4 +1,4 @@
-import { button, h } from "../dom";
+import { createButton, h } from "../dom";
 import type { AngleUnit, AngleUnits } from "../state/angle-unit";
 import { strings } from "../strings";
 
@@ -23,7 +23,7 @@ export class UnitSwitch {
 
   private createChoice(unit: AngleUnit, label: string): HTMLElement {
     const isCurrent = unit === this.angles.current;
-    const element = button(label, () => (this.angles.current = unit), isCurrent ? "on" : "", label);
+    const element = createButton(label, () => (this.angles.current = unit), isCurrent ? "on" : "", label);
     element.setAttribute("aria-pressed", String(isCurrent));
     return element;
   }

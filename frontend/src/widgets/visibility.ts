@@ -1,5 +1,6 @@
 /**
- * Calls `onChanged` when an element becomes visible or hidden; the dock removes the panels of hidden tabs from the page.
+ * Calls `onChanged` when an element becomes visible or hidden; the dock removes the panels of hidden tabs from the
+ * page.
  */
 export function onVisibilityChange(element: HTMLElement, onChanged: (isVisible: boolean) => void): void {
   let isVisible = false;

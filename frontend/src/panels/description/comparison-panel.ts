@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon, type IconName } from "../../icons";
 import type { ComparedItem, ComparedLocation } from "../../protocol";
 import { groupDifferences, MARK_COLORS, listUsedMarks, type DifferenceGroup } from "../../state/comparison";
 import type { DisplayState } from "../../state/displays";
@@ -17,12 +17,12 @@ export class ComparisonPanel implements Panel {
   readonly id = "comparison";
   readonly icon = "compare";
   readonly element: HTMLElement;
-  private readonly oldSwitch = this.switchOf("old", strings.comparison.old, strings.comparison.showOld);
-  private readonly new = this.switchOf("new", strings.comparison.new, strings.comparison.showNew);
+  private readonly oldSwitch = this.createSwitch("old", strings.comparison.old, strings.comparison.showOld);
+  private readonly newSwitch = this.createSwitch("new", strings.comparison.new, strings.comparison.showNew);
   private readonly alpha = h("input", { class: "slider", title: strings.comparison.alpha, aria: { label: strings.comparison.alpha } });
   private readonly marks = createTickBox(strings.comparison.marks, strings.comparison.marksHint, (isTicked) => (this.session.comparison.areMarksShown = isTicked));
   private readonly legend = h("ul", { class: "comparison-legend" });
-  private readonly count = h("p", { class: "comparison-count", role: "status" });
+  private readonly countText = h("p", { class: "comparison-count", role: "status" });
   private readonly list = h("div", { class: "comparison-list", role: "list", aria: { label: strings.comparison.list } });
 
   /** @param focusScene - points the camera at the selection. */
@@ -41,12 +41,12 @@ export class ComparisonPanel implements Panel {
     const head = h(
       "div",
       { class: "comparison-head" },
-      h("div", { class: "comparison-row" }, this.new),
+      h("div", { class: "comparison-row" }, this.newSwitch),
       h("div", { class: "comparison-row" }, this.oldSwitch, this.alpha),
       h("div", { class: "comparison-row" }, this.marks),
       this.legend,
     );
-    const body = h("div", { class: "comparison-body" }, h("div", { class: "comparison-top" }, head, this.count), this.list);
+    const body = h("div", { class: "comparison-body" }, h("div", { class: "comparison-top" }, head, this.countText), this.list);
     this.element = h("div", { class: "panel comparison" }, body);
     this.list.addEventListener("pointerleave", () => session.focus.setHovered(null));
     const { comparison, displays } = session;
@@ -61,13 +61,13 @@ export class ComparisonPanel implements Panel {
     this.show();
   }
 
-  private switchOf(side: "old" | "new", text: string, hint: string): ReturnType<typeof createTickBox> {
-    const tick = createTickBox(text, hint, (isTicked) => {
+  private createSwitch(side: "old" | "new", text: string, hint: string): ReturnType<typeof createTickBox> {
+    const tickBox = createTickBox(text, hint, (isTicked) => {
       const display = this.displayOf(side);
       if (display) this.session.setProperty(display.enabledId, isTicked);
     });
-    tick.append(h("span", { class: "comparison-file" }));
-    return tick;
+    tickBox.append(h("span", { class: "comparison-file" }));
+    return tickBox;
   }
 
   private displayOf(side: "old" | "new"): DisplayState | undefined {
@@ -78,10 +78,10 @@ export class ComparisonPanel implements Panel {
     const { compared } = this.session.comparison;
     if (!compared) return;
     const texts = strings.comparison;
-    for (const [tick, { label }] of [[this.oldSwitch, compared.old], [this.new, compared.new]] as const) {
-      const file = tick.querySelector(".comparison-file");
+    for (const [tickBox, { label }] of [[this.oldSwitch, compared.old], [this.newSwitch, compared.new]] as const) {
+      const file = tickBox.querySelector(".comparison-file");
       if (file) file.textContent = shortenPlace(label);
-      tick.title = `${tick === this.oldSwitch ? texts.showOld : texts.showNew}\n${label}`;
+      tickBox.title = `${tickBox === this.oldSwitch ? texts.showOld : texts.showNew}\n${label}`;
     }
     const marks = listUsedMarks([compared.new, compared.old]);
     this.legend.replaceChildren(
@@ -93,7 +93,7 @@ export class ComparisonPanel implements Panel {
     );
     const { items } = compared;
     this.element.classList.toggle("same", items.length === 0);
-    this.count.textContent = items.length === 0 ? texts.same : texts.count(items.length);
+    this.countText.textContent = items.length === 0 ? texts.same : texts.count(items.length);
     const scrollTop = this.list.scrollTop;
     this.list.replaceChildren(...groupDifferences(items).map((group) => this.createGroup(group)));
     this.list.scrollTop = scrollTop;
@@ -102,10 +102,10 @@ export class ComparisonPanel implements Panel {
   }
 
   private showSwitches(): void {
-    for (const [tick, side] of [[this.oldSwitch, "old"], [this.new, "new"]] as const) {
+    for (const [tickBox, side] of [[this.oldSwitch, "old"], [this.newSwitch, "new"]] as const) {
       const display = this.displayOf(side);
-      tick.box.disabled = display === undefined;
-      tick.box.checked = display?.isEnabled ?? false;
+      tickBox.box.disabled = display === undefined;
+      tickBox.box.checked = display?.isEnabled ?? false;
     }
     const alpha = this.displayOf("old")?.rows.number(1, "Alpha") ?? 1;
     this.alpha.disabled = !this.oldSwitch.box.checked;
@@ -117,11 +117,11 @@ export class ComparisonPanel implements Panel {
   /** Marks the group of the selected element. */
   private showFocus(): void {
     const { current } = this.session.focus;
-    const key = current ? keyOf(current) : "";
+    const key = current ? createElementKey(current) : "";
     for (const group of this.list.querySelectorAll<HTMLElement>(".difference-group")) {
-      const isOne = group.dataset["element"] === key;
-      group.classList.toggle("selected", isOne);
-      if (isOne) group.scrollIntoView({ block: "nearest" });
+      const isSelected = group.dataset["element"] === key;
+      group.classList.toggle("selected", isSelected);
+      if (isSelected) group.scrollIntoView({ block: "nearest" });
     }
   }
 
@@ -131,61 +131,61 @@ export class ComparisonPanel implements Panel {
     const texts = strings.comparison;
     const { focus, comparison } = this.session;
     const element = comparison.elementOf(first);
-    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, texts.subjects[first.subject]), first.name] as const;
-    const choose = (): void => {
+    const label = [createIcon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, texts.subjects[first.subject]), first.name] as const;
+    const select = (): void => {
       focus.select(element);
       this.focusScene();
     };
     const header = element
-      ? button(texts.select(first.name), choose, "difference-name", ...label)
+      ? createButton(texts.select(first.name), select, "difference-name", ...label)
       : h("div", { class: "difference-name" }, ...label);
     const group = h(
       "div",
-      { class: "difference-group", role: "listitem", data: element ? { element: keyOf(element) } : {} },
+      { class: "difference-group", role: "listitem", data: element ? { element: createElementKey(element) } : {} },
       h("div", { class: "difference-head" }, header, items.length === 1 && first.property === "" ? createKindTag(kind) : null),
-      ...items.map((item) => this.createItem(item, choose)),
+      ...items.map((item) => this.createItem(item, select)),
     );
-    const hover = (): void => focus.setHovered(element);
-    group.addEventListener("pointerenter", hover);
-    group.addEventListener("focusin", hover);
+    const highlight = (): void => focus.setHovered(element);
+    group.addEventListener("pointerenter", highlight);
+    group.addEventListener("focusin", highlight);
     group.addEventListener("focusout", () => focus.setHovered(null));
     return group;
   }
 
-  private createItem(item: ComparedItem, choose: () => void): HTMLElement {
+  private createItem(item: ComparedItem, select: () => void): HTMLElement {
     const texts = strings.comparison;
     const formatValue = (text: string | null): string => text ?? texts.nothing;
-    const line =
+    const valueLine =
       item.property === ""
         ? null
         : h(
             "div",
             { class: "difference-values" },
-            icon(KIND_ICONS[item.kind]),
+            createIcon(KIND_ICONS[item.kind]),
             h("span", { class: "difference-property" }, item.property),
             h("span", { class: "difference-value" }, h("del", {}, formatValue(item.old)), " → ", h("ins", {}, [formatValue(item.new), item.unit].filter((part) => part !== "").join(" "))),
           );
-    line?.addEventListener("click", choose);
-    const placeElements = [this.createPlace(item.old_place, "old"), this.createPlace(item.new_place, "new")].filter((element) => element !== null);
-    return h("div", { class: "difference" }, line, placeElements.length > 0 ? h("div", { class: "difference-places" }, ...placeElements) : null);
+    valueLine?.addEventListener("click", select);
+    const locations = [this.createLocation(item.old_place, "old"), this.createLocation(item.new_place, "new")].filter((element) => element !== null);
+    return h("div", { class: "difference" }, valueLine, locations.length > 0 ? h("div", { class: "difference-places" }, ...locations) : null);
   }
 
   /** Returns the place in the text: a link into the Source panel if that can show it. */
-  private createPlace(place: ComparedLocation | null, side: "old" | "new"): HTMLElement | null {
+  private createLocation(place: ComparedLocation | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;
     const parts = [h("span", { class: "difference-side" }, strings.comparison[side]), shortenPlace(text)] as const;
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...parts);
     const name = text.replace(/(:\d+)+$/, "");
-    return button(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...parts);
+    return createButton(text, () => this.session.description.placeRequested.emit({ file, line, display, name }), "place", ...parts);
   }
 }
 
 function createKindTag(kind: ComparedItem["kind"]): HTMLElement {
-  return h("span", { class: `difference-tag ${kind}` }, icon(KIND_ICONS[kind]), strings.comparison.kinds[kind]);
+  return h("span", { class: `difference-tag ${kind}` }, createIcon(KIND_ICONS[kind]), strings.comparison.kinds[kind]);
 }
 
-function keyOf({ display, kind, name }: { display: string; kind: string; name: string }): string {
+function createElementKey({ display, kind, name }: { display: string; kind: string; name: string }): string {
   return [display, kind, name].join(" ");
 }

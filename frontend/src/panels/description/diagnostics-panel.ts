@@ -1,10 +1,10 @@
-import { button, coalesce, h } from "../../dom";
-import { icon, LEVEL_ICONS } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon, LEVEL_ICONS } from "../../icons";
 import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../../protocol";
 import { problemsOf, type DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { formatTrouble } from "../displays/display-items";
+import { formatStatusRow } from "../displays/display-items";
 import type { Panel } from "../panel";
 import { formatPlace, shortenPath } from "../place";
 
@@ -15,7 +15,7 @@ export class DiagnosticsPanel implements Panel {
   readonly element = h("div", { class: "panel diagnostics" });
   private readonly findings = h("div", { aria: { live: "polite" } });
   private readonly displays = h("div");
-  private readonly noFindings = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
+  private readonly noFindings = h("p", { class: "empty" }, createIcon("check", "level-ok"), strings.diagnostics.none);
   private cards: ReadonlyMap<string, ProblemCard> = new Map<string, ProblemCard>();
 
   constructor(private readonly session: Session) {
@@ -33,59 +33,59 @@ export class DiagnosticsPanel implements Panel {
   private showFindings(): void {
     const show = (file: string, line: number): void => this.session.description.placeRequested.emit({ file, line });
     this.findings.replaceChildren(...this.session.diagnostics.map((item) => createCard(item, show)));
-    this.showNone();
+    this.updateEmptyNote();
   }
 
   private showDisplays(): void {
     const { displays } = this.session;
     const problems = problemsOf(displays.globalStatus);
-    const next = new Map<string, ProblemCard>();
-    const show = (id: string, name: string, troubles: readonly StatusRow[], createTitle: () => HTMLElement): void => {
-      if (troubles.length === 0) return;
+    const newCards = new Map<string, ProblemCard>();
+    const show = (id: string, name: string, statusRows: readonly StatusRow[], createTitle: () => HTMLElement): void => {
+      if (statusRows.length === 0) return;
       const card = this.cards.get(id) ?? new ProblemCard(createTitle());
-      card.show(name, troubles);
-      next.set(id, card);
+      card.show(name, statusRows);
+      newCards.set(id, card);
     };
     show("#status", strings.tree.globalStatus, problems, () => h("span"));
     for (const display of displays.displays) show(display.id, display.name, display.problems, () => this.createRowButton(display));
-    this.cards = next;
-    const elements = [...next.values()].map((card) => card.element);
+    this.cards = newCards;
+    const elements = [...newCards.values()].map((card) => card.element);
     const previousElements = [...this.displays.children];
     // Keep the element of a display whatever its text: the user may be about to click it.
     if (elements.length !== previousElements.length || elements.some((element, index) => element !== previousElements[index])) this.displays.replaceChildren(...elements);
-    this.showNone();
+    this.updateEmptyNote();
   }
 
-  private showNone(): void {
+  private updateEmptyNote(): void {
     this.noFindings.hidden = !this.session.displays.isKnown || this.findings.childElementCount + this.displays.childElementCount > 0;
   }
 
   private createRowButton(display: DisplayState): HTMLElement {
     const { displays } = this.session;
-    return button(strings.diagnostics.showDisplay, () => displays.rowRequested.emit(display), "text-link", display.name);
+    return createButton(strings.diagnostics.showDisplay, () => displays.rowRequested.emit(display), "text-link", display.name);
   }
 }
 
 /** The card with the problems of a display. */
 class ProblemCard {
   readonly element = h("article");
-  private readonly sign = h("span");
+  private readonly levelIcon = h("span");
   private readonly list = h("ul");
   private shownKey = "";
 
   constructor(private readonly title: HTMLElement) {
-    this.element.append(h("header", {}, this.sign, h("strong", {}, this.title)), this.list);
+    this.element.append(h("header", {}, this.levelIcon, h("strong", {}, this.title)), this.list);
   }
 
-  show(name: string, troubles: readonly StatusRow[]): void {
-    const key = JSON.stringify([name, troubles]);
+  show(name: string, statusRows: readonly StatusRow[]): void {
+    const key = JSON.stringify([name, statusRows]);
     if (key === this.shownKey) return;
     this.shownKey = key;
-    const level = troubles[0]?.level ?? "ok";
+    const level = statusRows[0]?.level ?? "ok";
     this.element.className = `diagnostic ${level === "warn" ? "warning" : level}`;
-    this.sign.replaceChildren(icon(LEVEL_ICONS[level], `level-${level}`));
+    this.levelIcon.replaceChildren(createIcon(LEVEL_ICONS[level], `level-${level}`));
     this.title.textContent = name;
-    this.list.replaceChildren(...troubles.map((row) => h("li", {}, formatTrouble(row))));
+    this.list.replaceChildren(...statusRows.map((row) => h("li", {}, formatStatusRow(row))));
   }
 }
 
@@ -98,7 +98,7 @@ function createCard(item: DiagnosticItem, show: ShowPlace): HTMLElement {
       {},
       h("span", { class: "tag" }, strings.diagnostics.note),
       note.message,
-      placeButton(note, show),
+      createPlaceButton(note, show),
     );
   });
   const hints = item.hints.map((hint) =>
@@ -110,21 +110,21 @@ function createCard(item: DiagnosticItem, show: ShowPlace): HTMLElement {
     h(
       "header",
       {},
-      icon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
+      createIcon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
       h("strong", {}, item.message),
       h("code", { class: "code" }, item.code),
     ),
-    placeButton(item, show),
+    createPlaceButton(item, show),
     createExcerpt(item),
     notes.length + hints.length > 0 ? h("ul", {}, ...notes, ...hints) : null,
   );
 }
 
 /** Returns a button that shows a place in the Source panel. */
-function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: ShowPlace): HTMLElement | null {
+function createPlaceButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: ShowPlace): HTMLElement | null {
   if (file === null) return null;
   const text = formatPlace(shortenPath(file), line, column);
-  return button(formatPlace(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
+  return createButton(formatPlace(file, line, column), () => show(file, line ?? 1), "place", createIcon("file"), text);
 }
 
 /** Returns the source line of a finding, with the part in question marked. */

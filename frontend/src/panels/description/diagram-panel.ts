@@ -1,7 +1,7 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
-import { layOut, type Diagram, type DiagramNode } from "../../state/diagram-layout";
+import { layOutDiagram, type Diagram, type DiagramNode } from "../../state/diagram-layout";
 import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -10,11 +10,11 @@ import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { getCurrentModel } from "./current-model";
 
-const SVG = "http://www.w3.org/2000/svg";
+const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
 const FONT = "12px Inter, 'Segoe UI', 'Noto Sans', sans-serif";
-const LINE_PX = 13;
+const ORIGIN_LINE_PX = 13;
 /** Font size of the smallest texts, the origins. */
-const TEXT_PX = 11;
+const MIN_TEXT_PX = 11;
 const FLASH_MS = 1600;
 
 /** The structure of the robot, drawn as by urdf_to_graphviz. */
@@ -25,7 +25,7 @@ export class DiagramPanel implements Panel {
   private readonly canvas = h("div", { class: "diagram", tabIndex: 0, role: "group", aria: { label: strings.description.diagram.label } });
   private readonly svg = createSvg("svg", {});
   private readonly drawing = createSvg("g", {});
-  private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
+  private readonly emptyNote = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panZoom: PanZoom;
   private readonly nodes = new Map<string, SVGGElement>();
   private readonly measure = createTextMeasure();
@@ -43,18 +43,18 @@ export class DiagramPanel implements Panel {
       (x, y, scale) => this.drawing.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`),
       () => this.fit(),
     );
-    const origins = button(texts.originsHint, () => this.toggleOrigins(origins), "tool on", texts.origins);
-    origins.setAttribute("aria-pressed", "true");
-    const bar = h(
+    const originsButton = createButton(texts.originsHint, () => this.toggleOrigins(originsButton), "tool on", texts.origins);
+    originsButton.setAttribute("aria-pressed", "true");
+    const toolbar = h(
       "div",
       { class: "toolbar" },
-      button(texts.fitHint, () => this.fit(), "tool", icon("fit"), texts.fit),
-      button(texts.zoomIn, () => this.panZoom.zoomBy(1.25), "tool bare", icon("plus")),
-      button(texts.zoomOut, () => this.panZoom.zoomBy(0.8), "tool bare", icon("minus")),
+      createButton(texts.fitHint, () => this.fit(), "tool", createIcon("fit"), texts.fit),
+      createButton(texts.zoomIn, () => this.panZoom.zoomBy(1.25), "tool bare", createIcon("plus")),
+      createButton(texts.zoomOut, () => this.panZoom.zoomBy(0.8), "tool bare", createIcon("minus")),
       h("span", { class: "spacer" }),
-      origins,
+      originsButton,
     );
-    this.element = h("div", { class: "panel" }, bar, this.empty, this.canvas);
+    this.element = h("div", { class: "panel" }, toolbar, this.emptyNote, this.canvas);
     const { description, focus } = session;
     const update = coalesce(() => this.update());
     holdWhileVisible(this.element, () => description.hold(), update);
@@ -79,7 +79,7 @@ export class DiagramPanel implements Panel {
 
   private update(): void {
     const model = getCurrentModel(this.session);
-    this.empty.hidden = model !== undefined;
+    this.emptyNote.hidden = model !== undefined;
     this.canvas.hidden = model === undefined;
     if (!model) return;
     if (model !== this.model) {
@@ -94,17 +94,17 @@ export class DiagramPanel implements Panel {
   }
 
   private draw(model: DescriptionModel): void {
-    this.diagram = layOut(model, this.showsOrigins, this.measure);
+    this.diagram = layOutDiagram(model, this.showsOrigins, this.measure);
     this.nodes.clear();
     const edges = createSvg("g", { class: "edges" });
     const shapes = createSvg("g", {});
     for (const node of this.diagram.nodes) {
       const { parent } = node;
       if (parent) {
-        edges.append(createSvg("path", { d: createEdgePath(parent, node), class: "edge" }), createSvg("path", { d: createHeadPath(node), class: "edge-head" }));
+        edges.append(createSvg("path", { d: createEdgePath(parent, node), class: "edge" }), createSvg("path", { d: createArrowHeadPath(node), class: "edge-head" }));
       }
       const shape = this.createNode(node, model);
-      this.nodes.set(keyOf(node.element), shape);
+      this.nodes.set(createNodeKey(node.element), shape);
       shapes.append(shape);
     }
     this.drawing.replaceChildren(edges, shapes);
@@ -116,14 +116,14 @@ export class DiagramPanel implements Panel {
     const group = createSvg("g", { class: `node ${element.kind} ${kind}`, transform: `translate(${x} ${y})` });
     group.dataset[element.kind] = element.name;
     origin.forEach((text, i) => {
-      const baseline = -height / 2 - 12 - (origin.length - 1 - i) * LINE_PX;
-      group.append(label(text, baseline, "origin"));
+      const baseline = -height / 2 - 12 - (origin.length - 1 - i) * ORIGIN_LINE_PX;
+      group.append(createLabel(text, baseline, "origin"));
     });
     const shape =
       element.kind === "link"
         ? createSvg("rect", { x: -width / 2, y: -height / 2, width, height, rx: 3 })
         : createSvg("ellipse", { rx: width / 2, ry: height / 2 });
-    group.append(shape, label(element.name, 0, "name"));
+    group.append(shape, createLabel(element.name, 0, "name"));
     group.addEventListener("click", () => {
       if (!this.panZoom.wasDragged) this.session.focus.select(element);
     });
@@ -136,7 +136,7 @@ export class DiagramPanel implements Panel {
     const { current } = this.session.focus;
     for (const element of this.drawing.querySelectorAll(".node.selected")) element.classList.remove("selected");
     if (!current) return;
-    this.nodes.get(keyOf(current))?.classList.add("selected");
+    this.nodes.get(createNodeKey(current))?.classList.add("selected");
     const node = this.diagram?.nodes.find(({ element }) => isSameElement(element, current));
     if (node && !this.canvas.matches(":hover")) this.panZoom.reveal(node.x, node.y);
   }
@@ -151,7 +151,7 @@ export class DiagramPanel implements Panel {
     if (!diagram || this.canvas.clientWidth === 0) return;
     const { current } = this.session.focus;
     const node = (current && diagram.nodes.find(({ element }) => isSameElement(element, current))) ?? diagram.nodes.find(({ parent }) => !parent);
-    this.panZoom.showLegibly(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
+    this.panZoom.showLegibly(diagram.width, diagram.height, MIN_TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
   }
 
   private toggleOrigins(toggle: HTMLElement): void {
@@ -175,7 +175,7 @@ export class DiagramPanel implements Panel {
   }
 }
 
-function keyOf({ kind, name }: ElementName): string {
+function createNodeKey({ kind, name }: ElementName): string {
   return `${kind} ${name}`;
 }
 
@@ -186,11 +186,11 @@ function createEdgePath(parent: DiagramNode, child: DiagramNode): string {
   return `M${parent.x} ${top}C${parent.x} ${top + bend} ${child.x} ${top} ${child.x} ${top + 2 * bend}V${bottom - 5}`;
 }
 
-function createHeadPath({ x, y, height }: DiagramNode): string {
+function createArrowHeadPath({ x, y, height }: DiagramNode): string {
   return `M${x - 3.5} ${y - height / 2 - 7}h7l-3.5 7z`;
 }
 
-function label(text: string, y: number, className: string): SVGTextElement {
+function createLabel(text: string, y: number, className: string): SVGTextElement {
   const element = createSvg("text", { y, class: className });
   element.textContent = text;
   return element;
@@ -200,7 +200,7 @@ function createSvg<K extends keyof SVGElementTagNameMap>(
   tag: K,
   attributes: Readonly<Record<string, string | number>>,
 ): SVGElementTagNameMap[K] {
-  const element = document.createElementNS(SVG, tag);
+  const element = document.createElementNS(SVG_NAMESPACE, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   return element;
 }

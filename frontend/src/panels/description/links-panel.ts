@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { DescriptionModel, ElementName } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
 import { listVisibleRows, LinkTreeState, type TreeRow } from "../../state/link-tree";
@@ -10,7 +10,7 @@ import { holdWhileVisible } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 import { getCurrentModel } from "./current-model";
 
-const ROW_PX = 23;
+const ROW_HEIGHT_PX = 23;
 const FLASH_MS = 1600;
 
 /** The kinematic tree: each link with the joint that moves it. */
@@ -18,14 +18,14 @@ export class LinksPanel implements Panel {
   readonly id = "links";
   readonly icon = "tree";
   readonly element: HTMLElement;
-  private readonly rows = new VirtualRows("link-rows", ROW_PX, (index) => this.createRow(index));
+  private readonly rows = new VirtualRows("link-rows", ROW_HEIGHT_PX, (index) => this.createRow(index));
   private readonly search = h("input", { class: "field filter" });
-  private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
+  private readonly emptyNote = h("p", { class: "empty" }, strings.description.waiting);
   private readonly count = h("span", { class: "toolbar-label" });
   private readonly tree = new LinkTreeState();
   private shownRows: TreeRow[] = [];
   private model: DescriptionModel | undefined;
-  private flashing = new Set<string>();
+  private flashingNames = new Set<string>();
 
   constructor(private readonly session: Session) {
     const texts = strings.description;
@@ -34,19 +34,19 @@ export class LinksPanel implements Panel {
     this.search.placeholder = texts.search;
     this.search.setAttribute("aria-label", texts.search);
     this.search.addEventListener("input", () => this.update());
-    const bar = h(
+    const toolbar = h(
       "div",
       { class: "toolbar" },
       this.count,
       h("span", { class: "spacer" }),
-      button(texts.expandAll, () => this.fold(false), "tool bare", icon("expand")),
-      button(texts.collapseAll, () => this.fold(true), "tool bare", icon("collapse")),
+      createButton(texts.expandAll, () => this.setAllFolded(false), "tool bare", createIcon("expand")),
+      createButton(texts.collapseAll, () => this.setAllFolded(true), "tool bare", createIcon("collapse")),
     );
     this.rows.element.setAttribute("role", "tree");
     this.rows.element.setAttribute("aria-label", texts.linksLabel);
     this.rows.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.rows.element.addEventListener("pointerleave", () => session.focus.setHovered(null));
-    this.element = h("div", { class: "panel" }, bar, this.search, this.empty, this.rows.element);
+    this.element = h("div", { class: "panel" }, toolbar, this.search, this.emptyNote, this.rows.element);
     const update = coalesce(() => this.update());
     const { description, focus } = session;
     holdWhileVisible(this.element, () => description.hold(), update);
@@ -61,7 +61,7 @@ export class LinksPanel implements Panel {
   private update(): void {
     this.model = getCurrentModel(this.session);
     const { model } = this;
-    this.empty.hidden = model !== undefined;
+    this.emptyNote.hidden = model !== undefined;
     this.rows.element.hidden = this.search.hidden = model === undefined;
     if (!model) return;
     const { links, joints } = model;
@@ -92,10 +92,10 @@ export class LinksPanel implements Panel {
     if (!row || !model) return h("div");
     const { link, joint, depth, isFolded } = row;
     const focus = this.session.focus.current;
-    const name = (kind: "link" | "joint", elementName: string): ElementName => ({ display: model.display, kind, name: elementName });
-    const self = name("link", link.name);
-    const twist = h("span", { class: row.hasChildren ? "twist" : "twist leaf" }, icon("chevron"));
-    twist.addEventListener("click", (event) => {
+    const createElementName = (kind: "link" | "joint", elementName: string): ElementName => ({ display: model.display, kind, name: elementName });
+    const linkElement = createElementName("link", link.name);
+    const foldToggle = h("span", { class: row.hasChildren ? "twist" : "twist leaf" }, createIcon("chevron"));
+    foldToggle.addEventListener("click", (event) => {
       event.stopPropagation();
       this.toggle(index);
     });
@@ -103,22 +103,22 @@ export class LinksPanel implements Panel {
     const element = h(
       "div",
       { class: "link-row", role: "treeitem", data: { link: link.name } },
-      twist,
-      icon("cube"),
+      foldToggle,
+      createIcon("cube"),
       h("span", { class: "link-name", title: link.name }, link.name),
-      findings.length > 0 ? createBadge(findings.map((finding) => finding.message)) : null,
+      findings.length > 0 ? createWarningBadge(findings.map((finding) => finding.message)) : null,
       h("span", { class: "spacer" }),
-      joint ? this.createJointName(name("joint", joint.name), joint.kind) : null,
+      joint ? this.createJointName(createElementName("joint", joint.name), joint.kind) : null,
     );
     element.style.setProperty("--depth", String(depth));
     element.id = `link-row-${index}`;
     element.setAttribute("aria-level", String(depth + 1));
-    element.setAttribute("aria-selected", String(isSameElement(focus, self)));
+    element.setAttribute("aria-selected", String(isSameElement(focus, linkElement)));
     if (row.hasChildren) element.setAttribute("aria-expanded", String(!isFolded));
     element.classList.toggle("selected", link.name === this.getFocusedLink());
-    element.classList.toggle("flash", this.flashing.has(link.name) || (joint !== null && this.flashing.has(joint.name)));
-    element.addEventListener("click", () => this.select(index, self));
-    element.addEventListener("pointerenter", () => this.session.focus.setHovered(self));
+    element.classList.toggle("flash", this.flashingNames.has(link.name) || (joint !== null && this.flashingNames.has(joint.name)));
+    element.addEventListener("click", () => this.select(index, linkElement));
+    element.addEventListener("pointerenter", () => this.session.focus.setHovered(linkElement));
     return element;
   }
 
@@ -126,7 +126,7 @@ export class LinksPanel implements Panel {
     const element = h(
       "span",
       { class: `joint-of ${kind}`, title: `${joint.name} (${strings.description.kinds[kind]})`, data: { joint: joint.name } },
-      icon("joints"),
+      createIcon("joints"),
       h("span", {}, joint.name),
     );
     element.classList.toggle("selected", isSameElement(this.session.focus.current, joint));
@@ -149,8 +149,8 @@ export class LinksPanel implements Panel {
     this.update();
   }
 
-  private fold(foldsAll: boolean): void {
-    if (this.model) this.tree.foldAll(this.model, foldsAll);
+  private setAllFolded(isFolded: boolean): void {
+    if (this.model) this.tree.setAllFolded(this.model, isFolded);
     this.update();
   }
 
@@ -158,18 +158,18 @@ export class LinksPanel implements Panel {
     const link = this.getFocusedLink();
     const index = this.shownRows.findIndex((row) => row.link.name === link);
     const row = this.shownRows[index];
-    const goTo = (index: number): void => {
-      const next = this.shownRows[Math.min(Math.max(0, index), this.shownRows.length - 1)];
-      if (next && this.model) this.select(index, { display: this.model.display, kind: "link", name: next.link.name });
+    const selectRow = (index: number): void => {
+      const targetRow = this.shownRows[Math.min(Math.max(0, index), this.shownRows.length - 1)];
+      if (targetRow && this.model) this.select(index, { display: this.model.display, kind: "link", name: targetRow.link.name });
     };
-    if (event.key === "ArrowDown") goTo(index + 1);
-    else if (event.key === "ArrowUp") goTo(index - 1);
-    else if (event.key === "Home") goTo(0);
-    else if (event.key === "End") goTo(this.shownRows.length - 1);
+    if (event.key === "ArrowDown") selectRow(index + 1);
+    else if (event.key === "ArrowUp") selectRow(index - 1);
+    else if (event.key === "Home") selectRow(0);
+    else if (event.key === "End") selectRow(this.shownRows.length - 1);
     else if (event.key === "ArrowRight" && row?.hasChildren && row.isFolded) this.toggle(index);
-    else if (event.key === "ArrowRight") goTo(index + 1);
+    else if (event.key === "ArrowRight") selectRow(index + 1);
     else if (event.key === "ArrowLeft" && row?.hasChildren && !row.isFolded) this.toggle(index);
-    else if (event.key === "ArrowLeft" && row?.joint) goTo(this.shownRows.findIndex((candidate) => candidate.link.name === row.joint?.parent));
+    else if (event.key === "ArrowLeft" && row?.joint) selectRow(this.shownRows.findIndex((candidate) => candidate.link.name === row.joint?.parent));
     else if (event.key === "Enter" && row?.joint && this.model) {
       // Switch from a link to its joint, or back.
       const kind = this.session.focus.current?.kind === "joint" ? "link" : "joint";
@@ -181,15 +181,15 @@ export class LinksPanel implements Panel {
   }
 
   private flash(names: readonly string[]): void {
-    this.flashing = new Set(names);
+    this.flashingNames = new Set(names);
     this.update();
     setTimeout(() => {
-      this.flashing.clear();
+      this.flashingNames.clear();
       this.update();
     }, FLASH_MS);
   }
 }
 
-function createBadge(messages: readonly string[]): HTMLElement {
-  return h("span", { class: "level-warn", title: messages.join("\n") }, icon("warn"));
+function createWarningBadge(messages: readonly string[]): HTMLElement {
+  return h("span", { class: "level-warn", title: messages.join("\n") }, createIcon("warn"));
 }

@@ -1,8 +1,8 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { CallSite, SourceRange } from "../../protocol";
 import { openBrowserStorage } from "../../storage";
-import { EXPANDED, type DescriptionModel, type ElementName } from "../../state/description-model";
+import { EXPANDED_TEXT_KEY, type DescriptionModel, type ElementName } from "../../state/description-model";
 import { isSameElement } from "../../state/element-focus";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -17,7 +17,7 @@ import { SourceView, type Highlight } from "./source-view";
 interface RequestedPlace {
   readonly file: string;
   readonly line: number;
-  readonly look: Highlight["kind"];
+  readonly highlightKind: Highlight["kind"];
   /** The display whose description the file belongs to, if that is not the one that the panels show. */
   readonly display: string | undefined;
   /** The file's name for users, if that is not its path: a file of a commit, for example. */
@@ -29,12 +29,12 @@ export class SourcePanel implements Panel {
   readonly id = "source";
   readonly icon = "code";
   readonly element: HTMLElement;
-  private readonly expandedView = new SourceView(strings.description.source.expanded, (line) => this.choose(EXPANDED, line));
-  private readonly origin = new SourceView(strings.description.source.origin, (line) => this.choose(this.file, line));
-  private readonly files = h("select", { class: "choice source-file" });
+  private readonly expandedView = new SourceView(strings.description.source.expanded, (line) => this.selectElementAt(EXPANDED_TEXT_KEY, line));
+  private readonly originView = new SourceView(strings.description.source.origin, (line) => this.selectElementAt(this.file, line));
+  private readonly fileSelect = h("select", { class: "choice source-file" });
   private readonly trail = h("div", { class: "source-trail" });
   private readonly notice = h("p", { class: "empty" });
-  private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
+  private readonly emptyNote = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panes: HTMLElement;
   private readonly editor: EditorPane;
   /** The file shown. */
@@ -51,11 +51,11 @@ export class SourcePanel implements Panel {
 
   constructor(private readonly session: Session) {
     const texts = strings.description.source;
-    this.files.setAttribute("aria-label", texts.file);
-    this.files.addEventListener("change", () => this.openFile(this.files.value));
+    this.fileSelect.setAttribute("aria-label", texts.file);
+    this.fileSelect.addEventListener("change", () => this.openFile(this.fileSelect.value));
     const createHeading = (text: string, title: string, ...elements: HTMLElement[]): HTMLElement =>
       h("div", { class: "source-heading" }, h("span", { class: "toolbar-label", title }, text), ...elements);
-    this.editor = new EditorPane(session, openBrowserStorage(), (file, line) => this.chooseInEditor(file, line), (file) => {
+    this.editor = new EditorPane(session, openBrowserStorage(), (file, line) => this.selectAtCursor(file, line), (file) => {
       this.file = file ?? this.file;
       this.update();
     });
@@ -65,16 +65,16 @@ export class SourcePanel implements Panel {
       h(
         "section",
         { class: "source-pane" },
-        createHeading(texts.origin, texts.file, this.files, this.editor.toggle),
+        createHeading(texts.origin, texts.file, this.fileSelect, this.editor.toggle),
         this.trail,
         this.editor.notice,
         this.notice,
-        this.origin.element,
+        this.originView.element,
         this.editor.element,
       ),
       h("section", { class: "source-pane" }, createHeading(texts.expanded, texts.expandedHint), this.expandedView.element),
     );
-    this.element = h("div", { class: "panel source-panel" }, this.empty, this.panes);
+    this.element = h("div", { class: "panel source-panel" }, this.emptyNote, this.panes);
     const { description, focus } = session;
     const update = coalesce(() => this.update());
     holdWhileVisible(
@@ -97,8 +97,8 @@ export class SourcePanel implements Panel {
   }
 
   /** Shows a line of a file, such as a diagnostic's. */
-  reveal(file: string, line: number, { look = "problem", display, name }: Partial<Pick<RequestedPlace, "look" | "display" | "name">> = {}): void {
-    this.requestedPlace = { file, line, look: display === undefined ? look : "focus", display, name };
+  reveal(file: string, line: number, { highlightKind = "problem", display, name }: Partial<Pick<RequestedPlace, "highlightKind" | "display" | "name">> = {}): void {
+    this.requestedPlace = { file, line, highlightKind: display === undefined ? highlightKind : "focus", display, name };
     this.file = file;
     this.pendingReveal.origin = line;
     this.update();
@@ -139,7 +139,7 @@ export class SourcePanel implements Panel {
     return {
       editor: this.editor.inspect(),
       expanded: { lines: this.expandedView.lineCount, marks: listMarks(this.expandedView) },
-      origin: { file: this.file, lines: this.origin.lineCount, marks: listMarks(this.origin) },
+      origin: { file: this.file, lines: this.originView.lineCount, marks: listMarks(this.originView) },
     };
   }
 
@@ -149,9 +149,9 @@ export class SourcePanel implements Panel {
     const { expanded, origin } = this.findWrittenPlaces();
     if (expanded) this.pendingReveal.expanded = expanded.line;
     const { current } = this.session.focus;
-    const isScrollKept = this.editor.isShown && (this.followsCursor || isSameElement(current, this.focusedElement));
+    const keepsScroll = this.editor.isShown && (this.followsCursor || isSameElement(current, this.focusedElement));
     this.focusedElement = current;
-    if (origin && !isScrollKept) {
+    if (origin && !keepsScroll) {
       this.requestedPlace = null;
       this.file = origin.file;
       this.pendingReveal.origin = origin.line;
@@ -165,45 +165,49 @@ export class SourcePanel implements Panel {
    * selection changes.
    */
   private refresh(): void {
-    const isScrollKept = this.editor.isShown || (this.requestedPlace !== null && this.requestedPlace.file === this.file);
-    if (isScrollKept) this.update();
+    const keepsScroll = this.editor.isShown || (this.requestedPlace !== null && this.requestedPlace.file === this.file);
+    if (keepsScroll) this.update();
     else this.showFocus();
   }
 
   private update(): void {
     this.model = getCurrentModel(this.session);
     const { model } = this;
-    const faulty = this.session.diagnostics.flatMap((item) => (item.file === null ? [] : [item.file]));
-    const files = [...new Set([...(model?.description.files ?? []), ...faulty, ...this.editor.files, ...(this.requestedPlace ? [this.requestedPlace.file] : [])])];
-    this.empty.hidden = model !== undefined || files.length > 0 || this.editor.hasWorkspace;
-    this.panes.hidden = !this.empty.hidden;
+    const filesWithFindings = this.session.diagnostics.flatMap((item) => (item.file === null ? [] : [item.file]));
+    const files = [...new Set([...(model?.description.files ?? []), ...filesWithFindings, ...this.editor.files, ...(this.requestedPlace ? [this.requestedPlace.file] : [])])];
+    this.emptyNote.hidden = model !== undefined || files.length > 0 || this.editor.hasWorkspace;
+    this.panes.hidden = !this.emptyNote.hidden;
     if (!files.includes(this.file)) this.file = files[0] ?? "";
-    this.listFiles(files);
+    this.updateFileSelect(files);
     if (!this.isVisible) return;
-    this.show();
+    this.showTexts();
   }
 
-  private show(): void {
+  private showTexts(): void {
     const display = this.model?.display ?? "";
     const { expanded, origin } = this.findWrittenPlaces();
     const texts = strings.description.source;
-    if (this.model) this.fill(this.expandedView, this.session.description.textOf(display, EXPANDED), focusMarks(expanded), "expanded");
-    const text = this.file === "" ? null : this.session.description.textOf(this.requestedPlace?.file === this.file ? (this.requestedPlace.display ?? display) : display, this.file);
-    const originMarks = origin?.file === this.file ? focusMarks(origin) : [];
-    if (this.requestedPlace?.file === this.file) originMarks.push({ firstLine: this.requestedPlace.line, lastLine: this.requestedPlace.line, kind: this.requestedPlace.look });
+    if (this.model) this.fillView(this.expandedView, this.session.description.textOf(display, EXPANDED_TEXT_KEY), createFocusHighlights(expanded), "expanded");
+    const displayOfFile = this.requestedPlace?.file === this.file ? (this.requestedPlace.display ?? display) : display;
+    const text = this.file === "" ? null : this.session.description.textOf(displayOfFile, this.file);
+    const originMarks = origin?.file === this.file ? createFocusHighlights(origin) : [];
+    if (this.requestedPlace?.file === this.file) {
+      const { line, highlightKind } = this.requestedPlace;
+      originMarks.push({ firstLine: line, lastLine: line, kind: highlightKind });
+    }
     const highlights = [...originMarks, ...this.createProblemMarks()];
     const isWorkingFile = this.file !== "" && (this.requestedPlace?.file !== this.file || (this.requestedPlace.display ?? display) === display);
     const isEdited = this.editor.show(isWorkingFile ? this.file : null, isWorkingFile ? highlights : [], this.pendingReveal.origin);
     if (isEdited) this.pendingReveal.origin = null;
     this.notice.hidden = isEdited || typeof text === "string";
-    this.origin.element.hidden = isEdited || text === null;
+    this.originView.element.hidden = isEdited || text === null;
     if (this.file === "") this.notice.textContent = texts.noOrigin;
     else this.notice.textContent = text === null ? texts.gone : texts.loading;
-    if (!isEdited) this.fill(this.origin, text, highlights, "origin");
-    this.showTrail();
+    if (!isEdited) this.fillView(this.originView, text, highlights, "origin");
+    this.showCallTrail();
   }
 
-  private fill(view: SourceView, text: string | null | undefined, highlights: Highlight[], pane: "expanded" | "origin"): void {
+  private fillView(view: SourceView, text: string | null | undefined, highlights: Highlight[], pane: "expanded" | "origin"): void {
     if (typeof text !== "string") return; // the old text stays until the new one has arrived
     view.setText(text);
     view.setHighlights(highlights);
@@ -214,7 +218,7 @@ export class SourcePanel implements Panel {
 
   private findWrittenPlaces(): { expanded: SourceRange | null; origin: SourceRange | null; calls: readonly CallSite[] } {
     const { current } = this.session.focus;
-    const places = current && this.model?.display === current.display ? this.model.placesOf(current) : undefined;
+    const places = current && this.model?.display === current.display ? this.model.sourceOf(current) : undefined;
     return places ?? { expanded: null, origin: null, calls: [] };
   }
 
@@ -225,17 +229,17 @@ export class SourcePanel implements Panel {
     );
   }
 
-  private listFiles(files: readonly string[]): void {
+  private updateFileSelect(files: readonly string[]): void {
     const options = files.map((file) => {
       const name = this.requestedPlace?.file === file ? this.requestedPlace.name : undefined;
       const option = h("option", { title: name ?? file }, name === undefined ? shortenPath(file) : shortenPlace(name));
       option.value = file;
       return option;
     });
-    this.files.replaceChildren(...options);
-    this.files.value = this.file;
-    this.files.title = this.file;
-    this.files.hidden = files.length === 0;
+    this.fileSelect.replaceChildren(...options);
+    this.fileSelect.value = this.file;
+    this.fileSelect.title = this.file;
+    this.fileSelect.hidden = files.length === 0;
   }
 
   private openFile(file: string): void {
@@ -245,39 +249,39 @@ export class SourcePanel implements Panel {
   }
 
   /** Shows the macro calls and includes that lead to the element, each as a link to its place. */
-  private showTrail(): void {
+  private showCallTrail(): void {
     const texts = strings.description.source;
     const { origin, calls } = this.findWrittenPlaces();
     const steps = calls.map(({ macro, file, line, column }) => {
       const text = texts.call(macro, formatPlace(shortenPath(file, 1), line, null));
-      return button(formatPlace(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
+      return createButton(formatPlace(file, line, column), () => this.reveal(file, line, { highlightKind: "focus" }), "trail-step", text);
     });
     const backButton = origin && this.requestedPlace
-      ? button(texts.origin, () => this.showFocus(), "tool bare", icon("reset"))
+      ? createButton(texts.origin, () => this.showFocus(), "tool bare", createIcon("reset"))
       : null;
     this.trail.hidden = steps.length === 0;
     this.trail.replaceChildren(h("span", { class: "tag" }, texts.made), ...steps, ...(backButton ? [backButton] : []));
   }
 
   /** Selects the element written on the line of the cursor, unless one of them is selected. */
-  private chooseInEditor(file: string, line: number): void {
+  private selectAtCursor(file: string, line: number): void {
     const elements = this.model?.elementsAt(file, line) ?? [];
     if (elements.length === 0 || elements.some((element) => isSameElement(element, this.session.focus.current))) return;
     this.followsCursor = true;
-    this.choose(file, line);
+    this.selectElementAt(file, line);
   }
 
   /**
    * Selects the element written on a line; if a macro makes the line yield several, the one after the selected element.
    */
-  private choose(file: string, line: number): void {
+  private selectElementAt(file: string, line: number): void {
     const elements = this.model?.elementsAt(file, line) ?? [];
     const index = elements.findIndex((element) => isSameElement(element, this.session.focus.current));
-    const next = elements[(index + 1) % elements.length];
-    if (next) this.session.focus.select(next);
+    const nextElement = elements[(index + 1) % elements.length];
+    if (nextElement) this.session.focus.select(nextElement);
   }
 }
 
-function focusMarks(range: SourceRange | null): Highlight[] {
+function createFocusHighlights(range: SourceRange | null): Highlight[] {
   return range ? [{ firstLine: range.line, lastLine: range.end_line, kind: "focus" }] : [];
 }

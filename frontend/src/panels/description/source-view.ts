@@ -3,9 +3,11 @@ import { computeLineStates, tokenize, type LineState } from "../../state/xml-tok
 import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 
-const ROW_PX = 18;
-/** The maximum number of characters of a line; longer ones are cut, because some files are a single line of a megabyte. */
-const LONGEST_LINE = 4000;
+const ROW_HEIGHT_PX = 18;
+/**
+ * The maximum number of characters of a line; longer ones are cut, because some files are a single line of a megabyte.
+ */
+const MAX_LINE_LENGTH = 4000;
 
 /** The lines `firstLine` to `lastLine`, 1-based and inclusive, and how they are marked. */
 export interface Highlight {
@@ -17,17 +19,17 @@ export interface Highlight {
 /** A text with line numbers and syntax colors; only the visible lines are drawn. */
 export class SourceView {
   readonly element: HTMLElement;
-  private readonly rows = new VirtualRows("source-lines", ROW_PX, (index) => this.createRow(index));
+  private readonly rows = new VirtualRows("source-lines", ROW_HEIGHT_PX, (index) => this.createRow(index));
   private lines: readonly string[] = [];
   private states: readonly LineState[] = [];
   private highlights: readonly Highlight[] = [];
   private cursor = 1;
   private text: string | null = null;
 
-  /** @param onChosen - called with the line that the user clicked, or pressed Enter on. */
+  /** @param onLineChosen - called with the line that the user clicked, or pressed Enter on. */
   constructor(
     label: string,
-    private readonly onChosen: (line: number) => void,
+    private readonly onLineChosen: (line: number) => void,
   ) {
     this.element = this.rows.element;
     this.element.setAttribute("role", "region");
@@ -51,7 +53,7 @@ export class SourceView {
     this.lines = text.replace(/\n$/, "").split(/\r\n?|\n/);
     this.states = computeLineStates(this.lines);
     const maxLength = this.lines.reduce((maximum, line) => Math.max(maximum, line.length), 0);
-    this.rows.body.style.minWidth = `calc(${Math.min(maxLength, LONGEST_LINE) + 4}ch + 70px)`;
+    this.rows.body.style.minWidth = `calc(${Math.min(maxLength, MAX_LINE_LENGTH) + 4}ch + 70px)`;
     this.rows.element.style.setProperty("--gutter", `${String(this.lines.length).length + 1}ch`);
     this.rows.refresh(this.lines.length);
   }
@@ -71,9 +73,9 @@ export class SourceView {
   private createRow(index: number): HTMLElement {
     const line = this.lines[index] ?? "";
     const code = h("code", { class: "source-code" });
-    const { tokens } = tokenize(line.slice(0, LONGEST_LINE), this.states[index] ?? "text");
+    const { tokens } = tokenize(line.slice(0, MAX_LINE_LENGTH), this.states[index] ?? "text");
     for (const { kind, text } of tokens) code.append(kind === "text" ? text : h("span", { class: `xml-${kind}` }, text));
-    if (line.length > LONGEST_LINE) code.append(h("i", {}, strings.description.source.long(line.length - LONGEST_LINE)));
+    if (line.length > MAX_LINE_LENGTH) code.append(h("i", {}, strings.description.source.long(line.length - MAX_LINE_LENGTH)));
     const number = index + 1;
     const row = h(
       "div",
@@ -88,7 +90,7 @@ export class SourceView {
   private onClick(event: MouseEvent): void {
     if (!window.getSelection()?.isCollapsed) return; // text is being selected
     const row = (event.target as HTMLElement).closest<HTMLElement>(".source-line");
-    if (row) this.choose(Number(row.dataset["line"]));
+    if (row) this.chooseLine(Number(row.dataset["line"]));
   }
 
   private onKeyDown(event: KeyboardEvent): void {
@@ -97,16 +99,16 @@ export class SourceView {
       this.cursor = Math.min(Math.max(1, this.cursor + step), this.lines.length);
       this.rows.reveal(this.cursor - 1);
       this.showCursor();
-    } else if (event.key === "Enter") this.choose(this.cursor);
+    } else if (event.key === "Enter") this.chooseLine(this.cursor);
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
 
-  private choose(line: number): void {
+  private chooseLine(line: number): void {
     this.cursor = line;
     this.showCursor();
-    this.onChosen(line);
+    this.onLineChosen(line);
   }
 
   private showCursor(): void {

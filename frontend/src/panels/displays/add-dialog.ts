@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { iconNameOf, icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { iconNameOf, createIcon } from "../../icons";
 import type { DisplayClass, TopicChoice } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import { findObviousDisplay } from "../../state/obvious-display";
@@ -20,9 +20,9 @@ export class AddDialog {
   private readonly dialog: Dialog;
   private readonly search = h("input", { class: "field" });
   private readonly list = h("div", { class: "choices", role: "listbox", aria: { label: strings.displays.addTitle } });
-  private readonly name = h("input", { class: "field wide" });
-  private readonly showAll = h("input", { class: "check" });
-  private readonly allBox: HTMLElement;
+  private readonly nameField = h("input", { class: "field wide" });
+  private readonly showAllBox = h("input", { class: "check" });
+  private readonly showAllLabel: HTMLElement;
   private readonly tabs: Readonly<Record<Tab, HTMLButtonElement>>;
   private readonly stopListening: () => void;
   private tab: Tab = "type";
@@ -37,29 +37,29 @@ export class AddDialog {
     private readonly group: DisplayState | null,
   ) {
     const texts = strings.displays;
-    this.tabs = { type: this.makeTab("type", texts.byType), topic: this.makeTab("topic", texts.byTopic) };
+    this.tabs = { type: this.createTab("type", texts.byType), topic: this.createTab("topic", texts.byTopic) };
     this.search.type = "search";
     this.search.placeholder = texts.search;
     this.search.setAttribute("aria-label", texts.search);
     this.search.addEventListener("input", () => this.fill());
     this.search.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
-    this.name.setAttribute("aria-label", texts.displayName);
-    this.name.maxLength = 200;
-    this.showAll.type = "checkbox";
-    this.showAll.addEventListener("change", () => this.fill());
-    this.allBox = h("label", { class: "check-label" }, this.showAll, texts.showAll);
+    this.nameField.setAttribute("aria-label", texts.displayName);
+    this.nameField.maxLength = 200;
+    this.showAllBox.type = "checkbox";
+    this.showAllBox.addEventListener("change", () => this.fill());
+    this.showAllLabel = h("label", { class: "check-label" }, this.showAllBox, texts.showAll);
     this.dialog = new Dialog(
       texts.addTitle,
       [
         h("div", { class: "tabs", role: "tablist" }, this.tabs.type, this.tabs.topic),
-        h("div", { class: "search-box" }, icon("search"), this.search),
+        h("div", { class: "search-box" }, createIcon("search"), this.search),
         this.list,
-        this.allBox,
-        h("label", { class: "form-field" }, h("span", {}, texts.displayName), this.name),
+        this.showAllLabel,
+        h("label", { class: "form-field" }, h("span", {}, texts.displayName), this.nameField),
         ...(group ? [h("p", { class: "hint" }, texts.into(group.name))] : []),
       ],
-      [{ label: strings.shell.cancel }, { label: texts.add, isMain: true, run: () => this.accept() }],
+      [{ label: strings.shell.cancel }, { label: texts.add, isPrimary: true, run: () => this.addDisplay() }],
       "add-dialog",
     );
     this.stopListening = session.configuration.choicesArrived.on(() => {
@@ -72,28 +72,28 @@ export class AddDialog {
 
   open(): void {
     this.dialog.open(this.search);
-    this.show("type");
+    this.showTab("type");
   }
 
-  private makeTab(tab: Tab, label: string): HTMLButtonElement {
-    const tabButton = button(label, () => this.show(tab), "tab", label);
+  private createTab(tab: Tab, label: string): HTMLButtonElement {
+    const tabButton = createButton(label, () => this.showTab(tab), "tab", label);
     tabButton.setAttribute("role", "tab");
     tabButton.addEventListener("keydown", (event) => {
       if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
       const otherTab = tab === "type" ? "topic" : "type";
-      this.show(otherTab);
+      this.showTab(otherTab);
       this.tabs[otherTab].focus();
     });
     return tabButton;
   }
 
-  private show(tab: Tab): void {
+  private showTab(tab: Tab): void {
     this.tab = tab;
     for (const name of ["type", "topic"] as const) {
       this.tabs[name].setAttribute("aria-selected", String(name === tab));
       this.tabs[name].tabIndex = name === tab ? 0 : -1;
     }
-    this.allBox.hidden = tab !== "topic";
+    this.showAllLabel.hidden = tab !== "topic";
     const { configuration } = this.session;
     this.isWaiting = tab === "topic" || configuration.choices === null;
     if (this.isWaiting) configuration.requestChoices();
@@ -110,8 +110,8 @@ export class AddDialog {
     if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.explainEmptyList()));
     const sameChoice = this.choices.find((choice) => choice.cls === previousChoice?.cls && choice.topic === previousChoice.topic);
     this.choose(sameChoice ?? (query === "" ? null : (this.choices[0] ?? null)));
-    const first = this.choices[0];
-    if (first && !sameChoice) first.element.tabIndex = 0;
+    const firstChoice = this.choices[0];
+    if (firstChoice && !sameChoice) firstChoice.element.tabIndex = 0;
   }
 
   private explainEmptyList(): string {
@@ -128,43 +128,43 @@ export class AddDialog {
   private listTypes(query: string): HTMLElement[] {
     return this.offeredChoices.classes
       .map(({ cls, messages }) => ({ cls, about: describeDisplay(cls), messages }))
-      .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(query)))
-      .map(({ cls, about }) => this.createChoice(cls, null, shortNameOf(cls), about));
+      .filter(({ cls, about: summary, messages }) => [cls, summary, ...messages].some((text) => text.toLowerCase().includes(query)))
+      .map(({ cls, about: summary }) => this.createChoice(cls, null, shortNameOf(cls), summary));
   }
 
   private listTopics(query: string): HTMLElement[] {
     const matches = ({ topic, message, classes }: TopicChoice): boolean =>
       [topic, message, ...classes].some((text) => text.toLowerCase().includes(query));
-    const listedTopics = this.offeredChoices.topics.filter((topicChoice) => topicChoice.classes.length > 0 || this.showAll.checked);
+    const listedTopics = this.offeredChoices.topics.filter((topicChoice) => topicChoice.classes.length > 0 || this.showAllBox.checked);
     return listedTopics.filter(matches).map((topicChoice) => {
       const { topic, message, classes } = topicChoice;
-      const first = findObviousDisplay(topicChoice);
-      const sortedClasses = [...classes].sort((a, b) => Number(b === first) - Number(a === first));
+      const obviousClass = findObviousDisplay(topicChoice);
+      const sortedClasses = [...classes].sort((a, b) => Number(b === obviousClass) - Number(a === obviousClass));
       const rows = sortedClasses.map((cls) => this.createChoice(cls, topic, shortNameOf(cls), describeDisplay(cls)));
-      const [obvious] = rows;
-      const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
+      const [obviousRow] = rows;
+      const topicName = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
       // A click on the name chooses the display that most users want.
       for (const kind of ["click", "dblclick"] as const) {
-        name.addEventListener(kind, () => obvious?.dispatchEvent(new MouseEvent(kind)));
+        topicName.addEventListener(kind, () => obviousRow?.dispatchEvent(new MouseEvent(kind)));
       }
       const hint = classes.length === 0 ? h("p", { class: "hint" }, strings.displays.topicNotShown) : null;
-      return h("div", { class: "topic-choice", role: "group", aria: { label: topic } }, name, ...rows, hint);
+      return h("div", { class: "topic-choice", role: "group", aria: { label: topic } }, topicName, ...rows, hint);
     });
   }
 
-  private createChoice(cls: string, topic: string | null, name: string, about: string): HTMLElement {
+  private createChoice(cls: string, topic: string | null, name: string, summary: string): HTMLElement {
     const element = h(
       "div",
       { class: "choice-row", role: "option", tabIndex: -1, aria: { selected: "false" } },
-      icon(iconNameOf(cls)),
+      createIcon(iconNameOf(cls)),
       h("strong", {}, name),
-      h("span", { class: "about" }, about),
+      h("span", { class: "about" }, summary),
     );
     const choice: Choice = { cls, topic, element };
     element.addEventListener("click", () => this.choose(choice));
     element.addEventListener("focus", () => this.choose(choice));
     element.addEventListener("dblclick", () => {
-      if (this.accept()) this.dialog.close();
+      if (this.addDisplay()) this.dialog.close();
     });
     this.choices.push(choice);
     return element;
@@ -178,9 +178,9 @@ export class AddDialog {
     }
     this.dialog.isReady = choice !== null;
     // Keep a name that the user typed.
-    if (choice && (this.name.value === "" || this.name.value === this.suggestedName)) {
+    if (choice && (this.nameField.value === "" || this.nameField.value === this.suggestedName)) {
       this.suggestedName = shortNameOf(choice.cls);
-      this.name.value = this.suggestedName;
+      this.nameField.value = this.suggestedName;
     }
     choice?.element.scrollIntoView({ block: "nearest" });
   }
@@ -190,19 +190,19 @@ export class AddDialog {
     const isInList = event.target !== this.search;
     const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[event.key];
     if (step !== undefined) {
-      const next = this.choices[Math.max(0, Math.min(this.choices.length - 1, index + step))];
-      this.choose(next ?? null);
-      if (isInList) next?.element.focus();
+      const nextChoice = this.choices[Math.max(0, Math.min(this.choices.length - 1, index + step))];
+      this.choose(nextChoice ?? null);
+      if (isInList) nextChoice?.element.focus();
     } else if (isInList && event.key === "Enter") {
-      if (this.accept()) this.dialog.close();
+      if (this.addDisplay()) this.dialog.close();
     } else return;
     event.preventDefault();
   }
 
-  private accept(): boolean {
+  private addDisplay(): boolean {
     if (!this.chosenChoice) return false;
     const { cls, topic } = this.chosenChoice;
-    this.session.configuration.add(cls, this.name.value.trim() || shortNameOf(cls), this.group?.id ?? null, topic);
+    this.session.configuration.add(cls, this.nameField.value.trim() || shortNameOf(cls), this.group?.id ?? null, topic);
     return true;
   }
 }

@@ -10,7 +10,7 @@ import { formatNumber } from "../../tree/numbers";
 import type { TreeItem } from "../../tree/tree-item";
 
 /** Positions (m) and quaternions are rounded to multiples of this. */
-const ROUNDING = 1e-6;
+const ROUNDING_STEP = 1e-6;
 
 /**
  * Returns the read-only rows below a row with `details`: the current pose of a frame, link or joint. The page has the
@@ -19,9 +19,9 @@ const ROUNDING = 1e-6;
 export function createDetailRows(node: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
   switch (node.details) {
     case "frame":
-      return frameRows(node, session.frames);
+      return createFrameRows(node, session.frames);
     case "link":
-      return createPoseRows(node.id, () => linkPose(node.name, display, session));
+      return createPoseRows(node.id, () => computeLinkPose(node.name, display, session));
     case "joint":
       return createJointRows(node, display, session);
     case "effort":
@@ -31,15 +31,15 @@ export function createDetailRows(node: PropertyNode, display: DisplayState, sess
   }
 }
 
-function frameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
+function createFrameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
   const findParentRow = (): number => frames.parents[frames.rowOf(name)] ?? -1;
   const computePoseInParent = (): PoseNumbers | null => {
-    const [parentPose, framePose] = [poseOf(frames, findParentRow()), poseOf(frames, frames.rowOf(name))];
+    const [parentPose, framePose] = [framePoseOf(frames, findParentRow()), framePoseOf(frames, frames.rowOf(name))];
     return parentPose && framePose ? computeRelativePose(parentPose, framePose) : null;
   };
   return [
     createTextRow(`${id}#Parent`, "Parent", () => frames.names[findParentRow()] ?? ""),
-    ...createPoseRows(id, () => poseOf(frames, frames.rowOf(name))),
+    ...createPoseRows(id, () => framePoseOf(frames, frames.rowOf(name))),
     ...createPoseRows(id, computePoseInParent, "Relative "),
   ];
 }
@@ -51,8 +51,8 @@ function createJointRows({ id, name }: PropertyNode, display: DisplayState, sess
     ...createPoseRows(id, () => computeJointPose(joint, display, session)),
     createTextRow(`${id}#Type`, "Type", () => joint.kind),
   ];
-  if (joint.lower !== null) rows.push(numberRow(`${id}#Lower Limit`, "Lower Limit", () => joint.lower));
-  if (joint.upper !== null) rows.push(numberRow(`${id}#Upper Limit`, "Upper Limit", () => joint.upper));
+  if (joint.lower !== null) rows.push(createNumberRow(`${id}#Lower Limit`, "Lower Limit", () => joint.lower));
+  if (joint.upper !== null) rows.push(createNumberRow(`${id}#Upper Limit`, "Upper Limit", () => joint.upper));
   if (joint.kind !== "fixed" && joint.kind !== "floating") {
     rows.push(createVectorRow(`${id}#Joint Axis`, "Joint Axis", ["X", "Y", "Z"], () => joint.axis));
   }
@@ -73,8 +73,8 @@ function createEffortRows({ id, name }: PropertyNode, display: DisplayState, ses
     return newestEffort;
   };
   return [
-    numberRow(`${id}#Effort`, "Effort", () => findLatestEffort()?.effort ?? 0),
-    numberRow(`${id}#Max Effort`, "Max Effort", () => findLatestEffort()?.limit ?? 0),
+    createNumberRow(`${id}#Effort`, "Effort", () => findLatestEffort()?.effort ?? 0),
+    createNumberRow(`${id}#Max Effort`, "Max Effort", () => findLatestEffort()?.limit ?? 0),
   ];
 }
 
@@ -88,14 +88,14 @@ function createPoseRows(id: string, readPose: () => PoseNumbers | null, prefix =
 
 /** Rounds away what single precision adds to zeros. */
 function roundPose(pose: PoseNumbers | null): number[] | null {
-  return pose && pose.map((part) => Math.round(part / ROUNDING) * ROUNDING);
+  return pose && pose.map((component) => Math.round(component / ROUNDING_STEP) * ROUNDING_STEP);
 }
 
 /** Returns a row with numbers in RViz's notation, with one row for each number below it. */
 function createVectorRow(
   key: string,
   name: string,
-  parts: readonly string[],
+  componentNames: readonly string[],
   readNumbers: () => readonly number[] | null,
 ): TreeItem {
   return {
@@ -103,13 +103,13 @@ function createVectorRow(
     get value() {
       return readNumbers()?.map(formatNumber).join("; ") ?? "";
     },
-    children: () => parts.map((part, i) => numberRow(`${key}/${part}`, part, () => readNumbers()?.[i] ?? null)),
+    children: () => componentNames.map((componentName, i) => createNumberRow(`${key}/${componentName}`, componentName, () => readNumbers()?.[i] ?? null)),
   };
 }
 
-function numberRow(key: string, name: string, number: () => number | null): TreeItem {
+function createNumberRow(key: string, name: string, readNumber: () => number | null): TreeItem {
   return createTextRow(key, name, () => {
-    const value = number();
+    const value = readNumber();
     return value === null ? "" : formatNumber(value);
   });
 }
@@ -128,20 +128,20 @@ function createTextRow(key: string, name: string, readText: () => string): TreeI
   };
 }
 
-function linkPose(name: string, display: DisplayState, { robots, frames }: Session): PoseNumbers | null {
+function computeLinkPose(name: string, display: DisplayState, { robots, frames }: Session): PoseNumbers | null {
   const link = robots.get(display.id)?.links.find((candidate) => candidate.name === name);
-  return link ? poseOf(frames, frames.rowOf(link.frame)) : null;
+  return link ? framePoseOf(frames, frames.rowOf(link.frame)) : null;
 }
 
 function computeJointPose(joint: JointScene, display: DisplayState, session: Session): PoseNumbers | null {
-  const parentPose = linkPose(joint.parent, display, session);
+  const parentPose = computeLinkPose(joint.parent, display, session);
   const [x = 0, y = 0, z = 0] = joint.position;
   const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
   return parentPose && composePoses(parentPose, [x, y, z, qx, qy, qz, qw]);
 }
 
-function poseOf(frames: FrameStore, row: number): PoseNumbers | null {
-  if (!frames.has(row)) return null;
+function framePoseOf(frames: FrameStore, row: number): PoseNumbers | null {
+  if (!frames.hasPose(row)) return null;
   const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = frames.poses.subarray(row * 7, row * 7 + 7);
   return [x, y, z, qx, qy, qz, qw];
 }

@@ -3,7 +3,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { askName } from "../../widgets/dialog";
 import type { MenuEntry } from "../../widgets/menu";
-import { formatShortcut, matches, SHORTCUTS } from "../../widgets/shortcuts";
+import { formatShortcut, matchesShortcut, SHORTCUTS } from "../../widgets/shortcuts";
 import { AddDialog } from "./add-dialog";
 
 /** The commands for the selected display, or for all selected displays. */
@@ -20,13 +20,13 @@ export class DisplayCommands {
   }
 
   duplicate(): void {
-    const ids = this.ids;
-    if (ids.length > 0) this.session.configuration.duplicate(ids);
+    const selectedIds = this.selectedIds;
+    if (selectedIds.length > 0) this.session.configuration.duplicate(selectedIds);
   }
 
   remove(): void {
-    const ids = this.ids;
-    if (ids.length > 0) this.session.configuration.remove(ids);
+    const selectedIds = this.selectedIds;
+    if (selectedIds.length > 0) this.session.configuration.remove(selectedIds);
   }
 
   rename(): void {
@@ -38,11 +38,11 @@ export class DisplayCommands {
   }
 
   groupSelected(): void {
-    const ids = this.ids;
-    if (ids.length > 0) this.session.configuration.group(ids, strings.displays.newGroup);
+    const selectedIds = this.selectedIds;
+    if (selectedIds.length > 0) this.session.configuration.group(selectedIds, strings.displays.newGroup);
   }
 
-  private get ids(): string[] {
+  private get selectedIds(): string[] {
     return this.listSelectedDisplays().map(({ id }) => id);
   }
 
@@ -59,7 +59,7 @@ export class DisplayCommands {
   }
 
   /** Runs the command of a key and returns whether there was one. On the row of a property, only Add has a key. */
-  runKey(event: KeyboardEvent, isOnDisplay: boolean): boolean {
+  handleKey(event: KeyboardEvent, isOnDisplay: boolean): boolean {
     const keys: readonly (readonly [keyof typeof SHORTCUTS, () => void])[] = [
       ["add", () => this.add()],
       ["addToo", () => this.add()],
@@ -69,7 +69,7 @@ export class DisplayCommands {
       ["moveUp", () => this.move(true)],
       ["moveDown", () => this.move(false)],
     ];
-    const command = keys.find(([name]) => matches(event, SHORTCUTS[name]));
+    const command = keys.find(([name]) => matchesShortcut(event, SHORTCUTS[name]));
     if (!command || (!command[0].startsWith("add") && !isOnDisplay)) return false;
     command[1]();
     return true;

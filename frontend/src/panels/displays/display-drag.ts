@@ -9,7 +9,7 @@ export interface DropPlace {
 }
 
 /** Returns the new place of a display that is dropped on another; null where it cannot go. */
-export function dropPlace(
+export function computeDropPlace(
   displays: readonly DisplayState[],
   draggedDisplay: DisplayState,
   target: DisplayState,
@@ -27,18 +27,18 @@ export function dropPlace(
 }
 
 /** Returns the part of a row under the pointer; the middle of a group's row means into the group. */
-export function dropPart(offset: number, height: number, isGroup: boolean): DropPart {
-  const part = offset / height;
-  if (isGroup && part > 0.3 && part < 0.7) return "inside";
-  return part < 0.5 ? "before" : "after";
+export function computeDropPart(offset: number, height: number, isGroup: boolean): DropPart {
+  const share = offset / height;
+  if (isGroup && share > 0.3 && share < 0.7) return "inside";
+  return share < 0.5 ? "before" : "after";
 }
 
-interface Tree {
+interface DisplayTree {
   readonly element: HTMLElement;
   /** Returns the display that an element belongs to, and its row if the element is in the display's own row. */
   displayAt(target: EventTarget | null): { display: DisplayState; row: HTMLElement | null } | null;
   listDisplays(): readonly DisplayState[];
-  move(display: DisplayState, dropPlace: DropPlace): void;
+  move(display: DisplayState, computeDropPlace: DropPlace): void;
 }
 
 /** Makes the rows of displays draggable. */
@@ -46,7 +46,7 @@ export class DisplayDrag {
   private draggedDisplay: DisplayState | null = null;
   private markedRow: HTMLElement | null = null;
 
-  constructor(private readonly tree: Tree) {
+  constructor(private readonly tree: DisplayTree) {
     const { element } = tree;
     element.addEventListener("pointerdown", (event) => {
       const item = tree.displayAt(event.target);
@@ -65,29 +65,29 @@ export class DisplayDrag {
       if (!element.contains(event.relatedTarget as Node | null)) this.mark(null);
     });
     element.addEventListener("drop", (event) => {
-      const place = this.placeOf(event);
+      const place = this.findDrop(event);
       if (this.draggedDisplay && place) tree.move(this.draggedDisplay, place.place);
       if (this.draggedDisplay) event.preventDefault();
-      this.end();
+      this.endDrag();
     });
-    element.addEventListener("dragend", () => this.end());
+    element.addEventListener("dragend", () => this.endDrag());
   }
 
   private onDragOver(event: DragEvent): void {
-    const place = this.placeOf(event);
+    const place = this.findDrop(event);
     this.mark(place?.row ?? null, place?.part);
     if (!place) return;
     event.preventDefault();
     if (event.dataTransfer) event.dataTransfer.dropEffect = "move";
   }
 
-  private placeOf(event: DragEvent): { place: DropPlace; part: DropPart; row: HTMLElement | null } | null {
+  private findDrop(event: DragEvent): { place: DropPlace; part: DropPart; row: HTMLElement | null } | null {
     const item = this.tree.displayAt(event.target);
     if (!this.draggedDisplay || !item) return null;
     const { display, row } = item;
-    const box = row?.getBoundingClientRect();
-    const part = box ? dropPart(event.clientY - box.top, box.height, display.isGroup) : "after";
-    const place = dropPlace(this.tree.listDisplays(), this.draggedDisplay, display, part);
+    const rowRect = row?.getBoundingClientRect();
+    const part = rowRect ? computeDropPart(event.clientY - rowRect.top, rowRect.height, display.isGroup) : "after";
+    const place = computeDropPlace(this.tree.listDisplays(), this.draggedDisplay, display, part);
     return place && { place, part, row };
   }
 
@@ -97,7 +97,7 @@ export class DisplayDrag {
     if (row && part) row.dataset["drop"] = part;
   }
 
-  private end(): void {
+  private endDrag(): void {
     this.mark(null);
     this.draggedDisplay = null;
   }

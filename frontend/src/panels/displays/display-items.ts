@@ -53,13 +53,13 @@ function createDisplayItem(
     name: display.name,
     kind: "bool",
     value: display.isChecked,
-    description: describe(display, hasDrawing),
+    description: describeDisplay(display, hasDrawing),
     icon: hasDrawing ? iconNameOf(display.drawing) : "unknown",
     isStrong: true,
     isMultiSelectable: true,
     isMuted: !hasDrawing || !display.isEnabled,
     ...(hasDrawing && display.isEnabled ? { level: findWorstLevel(session, display) } : {}),
-    ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(formatTrouble)].join("\n") } : {}),
+    ...(display.problems.length > 0 ? { hint: [display.name, ...display.problems.map(formatStatusRow)].join("\n") } : {}),
     ...(hasDrawing ? {} : { badge: strings.tree.notDrawn }),
     isExpanded: display.isGroup || (display.isEnabled && isOnlyContent(session, display)),
     children: () => [...status, ...createDisplayRows(display, session, set).map(addTopics), ...createChildItems()],
@@ -81,8 +81,8 @@ function offerTopics(
   const rowTopics = display.rows.find(row)?.topics;
   const words = rowTopics?.words ?? [];
   const matchesWords = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
-  const forget = configuration.choicesArrived.on(({ classes, topics }) => {
-    forget();
+  const unsubscribe = configuration.choicesArrived.on(({ classes, topics }) => {
+    unsubscribe();
     const messageTypes = rowTopics?.messages ?? classes.find((entry) => entry.cls === display.cls)?.messages ?? [];
     const messages = messageTypes.length > 0 ? messageTypes : [DESCRIPTION_TYPE];
     show(topics.filter(({ topic, message }) => messages.includes(message) && matchesWords(topic)).map(({ topic }) => topic));
@@ -95,20 +95,20 @@ function isDrawn(display: DisplayState): boolean {
 }
 
 /** Returns a status row as one line. */
-export function formatTrouble({ name, text }: StatusRow): string {
+export function formatStatusRow({ name, text }: StatusRow): string {
   return `${name}: ${text}`;
 }
 
 /** Returns a description of a display, in a sentence or two. */
-export function describe(display: DisplayState, hasDrawing = isDrawn(display)): string {
+export function describeDisplay(display: DisplayState, hasDrawing = isDrawn(display)): string {
   const name = display.cls.split("/").pop() ?? "";
-  const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
-  const details = hasDrawing ? (about ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
+  const summary = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
+  const details = hasDrawing ? (summary ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
   return `${display.cls}. ${details}`;
 }
 
 /** Displays without messages; they are visible without their rows in the list. */
-const SCENERY = ["Grid", "Axes", "TF", "Group"];
+const CLASSES_WITHOUT_MESSAGES = ["Grid", "Axes", "TF", "Group"];
 
 /**
  * Whether a RobotModel is the only content. It then starts expanded; otherwise its links would push other displays out
@@ -116,7 +116,7 @@ const SCENERY = ["Grid", "Axes", "TF", "Group"];
  */
 function isOnlyContent(session: Session, display: DisplayState): boolean {
   if (!display.cls.endsWith("/RobotModel")) return false;
-  return session.displays.displays.every((otherDisplay) => otherDisplay === display || SCENERY.includes(shortNameOf(otherDisplay.cls)));
+  return session.displays.displays.every((otherDisplay) => otherDisplay === display || CLASSES_WITHOUT_MESSAGES.includes(shortNameOf(otherDisplay.cls)));
 }
 
 /** Returns the worst status of a display and, for a group, of its members. */

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon, LEVEL_ICONS } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon, LEVEL_ICONS } from "../../icons";
 import type { StatusRow } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
@@ -11,9 +11,9 @@ import { formatShortcut, SHORTCUTS } from "../../widgets/shortcuts";
 import type { Panel } from "../panel";
 import { DisplayCommands } from "./display-commands";
 import { DisplayDrag } from "./display-drag";
-import { describe, createDisplayItems, formatTrouble } from "./display-items";
+import { describeDisplay, createDisplayItems, formatStatusRow } from "./display-items";
 import { followLiveValues } from "./live-values";
-import { isExpansion, linkOfKey, linkRowPath } from "./robot-rows";
+import { isExpansion, findLinkOfRow, findLinkRowPath } from "./robot-rows";
 
 /** RViz's Displays panel: a toolbar, the property tree, and the description of the selected row. */
 export class DisplaysPanel implements Panel {
@@ -25,19 +25,19 @@ export class DisplaysPanel implements Panel {
   private readonly filter = h("input", { class: "field" });
   private readonly emptyNote = h("p", { class: "empty" }, strings.displays.nothingFound);
   /** Hidden until a row is selected. */
-  private readonly help = h("div", { class: "help", aria: { live: "polite" } });
-  private explained = "";
-  private readonly needsDisplay: HTMLButtonElement[] = [];
+  private readonly helpBox = h("div", { class: "help", aria: { live: "polite" } });
+  private explainedKey = "";
+  private readonly displayButtons: HTMLButtonElement[] = [];
 
   constructor(private readonly session: Session) {
     this.tree = new TreeView(strings.panels.displays, () => this.listItems(), () => session.frames.names);
     this.tree.preserveIn(session.pageMemory, this.id);
-    this.commands = new DisplayCommands(session, () => this.selectedDisplay, () => this.selectedAll);
-    this.emptyNote.hidden = this.help.hidden = true;
-    this.element = h("div", { class: "panel displays-panel" }, this.createToolbar(), this.filterBar(), this.emptyNote, this.tree.element, this.help);
+    this.commands = new DisplayCommands(session, () => this.selectedDisplay, () => this.selectedDisplays);
+    this.emptyNote.hidden = this.helpBox.hidden = true;
+    this.element = h("div", { class: "panel displays-panel" }, this.createToolbar(), this.createFilterBar(), this.emptyNote, this.tree.element, this.helpBox);
     this.listen();
     this.bindKeysAndMouse();
-    this.enableButtons();
+    this.updateButtons();
   }
 
   /** The display to which the selected row belongs. */
@@ -46,7 +46,7 @@ export class DisplaysPanel implements Panel {
   }
 
   /** The displays of all selected rows. */
-  private get selectedAll(): DisplayState[] {
+  private get selectedDisplays(): DisplayState[] {
     const displays = this.tree.selections.flatMap((key) => this.displayOf(key) ?? []);
     return [...new Set(displays)];
   }
@@ -54,22 +54,22 @@ export class DisplaysPanel implements Panel {
   private createToolbar(): HTMLElement {
     const texts = strings.displays;
     const { commands } = this;
-    const createTool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
-      const toolButton = button(`${label} (${keys})`, run, "tool bare", icon(name));
-      this.needsDisplay.push(toolButton);
+    const createTool = (label: string, name: Parameters<typeof createIcon>[0], keys: string, run: () => void): HTMLButtonElement => {
+      const toolButton = createButton(`${label} (${keys})`, run, "tool bare", createIcon(name));
+      this.displayButtons.push(toolButton);
       return toolButton;
     };
     return h(
       "div",
       { class: "toolbar", role: "toolbar", aria: { label: strings.panels.displays } },
-      button(`${texts.addHint} (${formatShortcut(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), texts.add),
+      createButton(`${texts.addHint} (${formatShortcut(SHORTCUTS.add)})`, () => commands.add(), "tool", createIcon("add"), texts.add),
       createTool(texts.duplicate, "duplicate", formatShortcut(SHORTCUTS.duplicate), () => commands.duplicate()),
       createTool(texts.rename, "rename", formatShortcut(SHORTCUTS.rename), () => commands.rename()),
       createTool(texts.remove, "remove", formatShortcut(SHORTCUTS.remove), () => commands.remove()),
     );
   }
 
-  private filterBar(): HTMLElement {
+  private createFilterBar(): HTMLElement {
     this.filter.type = "search";
     this.filter.placeholder = strings.displays.filter;
     this.filter.setAttribute("aria-label", strings.displays.filter);
@@ -80,7 +80,7 @@ export class DisplaysPanel implements Panel {
       this.tree.refresh();
       event.stopPropagation();
     });
-    return h("div", { class: "search-box" }, icon("search"), this.filter);
+    return h("div", { class: "search-box" }, createIcon("search"), this.filter);
   }
 
   private listItems(): ReturnType<typeof filterItems> {
@@ -97,7 +97,7 @@ export class DisplaysPanel implements Panel {
     displays.valueChanged.on(({ node, display }) => {
       if (!display || !isExpansion(node)) return;
       const prefixes = [`${display.id}/Links/`, `${display.id}/Joints/`];
-      this.tree.resetExpansion((key) => prefixes.some((start) => key.startsWith(start)));
+      this.tree.resetExpansion((key) => prefixes.some((prefix) => key.startsWith(prefix)));
     });
     displays.statusChanged.on(this.tree.refresh);
     displays.statusChanged.on((display) => {
@@ -107,11 +107,11 @@ export class DisplaysPanel implements Panel {
       this.filter.value = "";
       this.tree.reveal(findPath(display));
       this.explainDisplay(display);
-      this.enableButtons();
+      this.updateButtons();
     });
     displays.enabledChanged.on(this.tree.refresh);
     displays.treeChanged.on(() => {
-      this.enableButtons();
+      this.updateButtons();
       const { selectedDisplay } = this;
       if (selectedDisplay && this.tree.selection === selectedDisplay.id) this.explainDisplay(selectedDisplay);
     });
@@ -122,7 +122,7 @@ export class DisplaysPanel implements Panel {
       if (display) this.explainDisplay(display);
       else this.explain(item.name, item.description);
       this.selectLink(item.key);
-      this.enableButtons();
+      this.updateButtons();
     });
     selection.changed.on(() => this.showSelection());
   }
@@ -134,7 +134,7 @@ export class DisplaysPanel implements Panel {
       (event) => {
         const isOnRow = event.target instanceof Element && event.target.matches("[role=treeitem], .check");
         const isOnDisplay = tree.selections.length > 0 && tree.selections.every((key) => session.displays.find(key));
-        if (!isOnRow || !commands.runKey(event, isOnDisplay)) return;
+        if (!isOnRow || !commands.handleKey(event, isOnDisplay)) return;
         event.preventDefault();
         event.stopPropagation();
       },
@@ -172,41 +172,41 @@ export class DisplaysPanel implements Panel {
     return (id !== undefined && this.session.displays.find(id)) || null;
   }
 
-  private enableButtons(): void {
-    const isNoneSelected = this.selectedDisplay === null;
-    for (const control of this.needsDisplay) control.disabled = isNoneSelected;
+  private updateButtons(): void {
+    const hasNoSelection = this.selectedDisplay === null;
+    for (const control of this.displayButtons) control.disabled = hasNoSelection;
   }
 
-  private explain(name: string, description: string, troubles: readonly StatusRow[] = []): void {
-    const key = JSON.stringify([name, description, troubles]);
-    if (key === this.explained) return; // do not announce the text again with each message
-    this.explained = key;
+  private explain(name: string, description: string, statusRows: readonly StatusRow[] = []): void {
+    const key = JSON.stringify([name, description, statusRows]);
+    if (key === this.explainedKey) return; // do not announce the text again with each message
+    this.explainedKey = key;
     this.tree.runAfterRelease(() => {
-      if (key !== this.explained) return;
-      this.help.hidden = description === "" && troubles.length === 0;
-      const problems = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), formatTrouble(row)));
-      this.help.replaceChildren(h("strong", {}, name), ...problems, h("p", {}, description));
+      if (key !== this.explainedKey) return;
+      this.helpBox.hidden = description === "" && statusRows.length === 0;
+      const problems = statusRows.map((row) => h("p", { class: `trouble ${row.level}` }, createIcon(LEVEL_ICONS[row.level], `level-${row.level}`), formatStatusRow(row)));
+      this.helpBox.replaceChildren(h("strong", {}, name), ...problems, h("p", {}, description));
     });
   }
 
   /** Shows the problems of a display, followed by its description. */
   private explainDisplay(display: DisplayState): void {
-    this.explain(display.name, describe(display), display.problems);
+    this.explain(display.name, describeDisplay(display), display.problems);
   }
 
   private selectLink(key: string): void {
-    const linkName = linkOfKey(this.session, key);
+    const linkRow = findLinkOfRow(this.session, key);
     const { selectedLink } = this.session.selection;
     // Revealing the row of a selected link must not clear the selection of other links.
-    if (linkName && selectedLink?.display === linkName.display.id && selectedLink.link.name === linkName.link) return;
-    const link = linkName && this.session.robots.get(linkName.display.id)?.links.find((candidate) => candidate.name === linkName.link);
-    if (linkName && link) this.session.selection.select({ display: linkName.display.id, link });
+    if (linkRow && selectedLink?.display === linkRow.display.id && selectedLink.link.name === linkRow.link) return;
+    const link = linkRow && this.session.robots.get(linkRow.display.id)?.links.find((candidate) => candidate.name === linkRow.link);
+    if (linkRow && link) this.session.selection.select({ display: linkRow.display.id, link });
   }
 
   private showSelection(): void {
     const { selectedLink } = this.session.selection;
     const display = selectedLink && this.session.displays.find(selectedLink.display);
-    const path = display && linkRowPath(display, this.session, selectedLink.link.name);
+    const path = display && findLinkRowPath(display, this.session, selectedLink.link.name);
     if (path) this.tree.reveal(path);
   }
 }

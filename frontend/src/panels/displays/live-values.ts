@@ -1,7 +1,7 @@
 import type { Session } from "../../state/session";
 import type { TreeView } from "../../tree/tree-view";
 
-const INTERVAL_MS = 100;
+const UPDATE_INTERVAL_MS = 100;
 
 /** Updates the rows whose values follow the scene, a few times a second while any of them is visible. */
 export function followLiveValues(tree: TreeView, session: Session): void {
@@ -11,7 +11,7 @@ export function followLiveValues(tree: TreeView, session: Session): void {
     timer = window.setTimeout(() => {
       timer = 0;
       tree.updateLiveRows();
-    }, INTERVAL_MS);
+    }, UPDATE_INTERVAL_MS);
   };
   session.frames.posesChanged.on(schedule);
   session.data.received.on(schedule);

@@ -9,10 +9,10 @@ import { createDetailRows } from "./detail-rows";
 
 type SetValue = (id: string, value: PropertyValue) => void;
 
-const STYLE = "Link Tree Style";
-const TREE = "Expand Tree";
-const LINK_DETAILS = "Expand Link Details";
-const JOINT_DETAILS = "Expand Joint Details";
+const STYLE_ROW = "Link Tree Style";
+const EXPAND_TREE_ROW = "Expand Tree";
+const EXPAND_LINK_DETAILS_ROW = "Expand Link Details";
+const EXPAND_JOINT_DETAILS_ROW = "Expand Joint Details";
 
 /** RViz's Link Tree Styles: the title of the top row, whether it is a tree, and whether it lists links and joints. */
 const STYLES: Readonly<Record<string, { title: string; isTree: boolean; hasLinks: boolean; hasJoints: boolean }>> = {
@@ -30,19 +30,19 @@ export function createDisplayRows(display: DisplayState, session: Session, set: 
   const robot = session.robots.get(display.id);
   return display.rows.nodes.flatMap((node) => {
     if (!robot || !isRobotRow(node)) return [createRowWithDetails(node, display, session, set)];
-    return node.name === "Links" ? [new RobotTree(display, session, robot, set).top] : [];
+    return node.name === "Links" ? [new RobotTree(display, session, robot, set).topRow] : [];
   });
 }
 
 /** Returns the keys of a link's row, or of its joint's row, and of the rows above; null if it has none. */
-export function linkRowPath(display: DisplayState, session: Session, link: string): string[] | null {
+export function findLinkRowPath(display: DisplayState, session: Session, link: string): string[] | null {
   const robot = session.robots.get(display.id);
   if (!robot || !display.rows.find("Links")) return null;
   return new RobotTree(display, session, robot, () => undefined).findPath(link);
 }
 
 /** Returns the display and link whose row has this key. */
-export function linkOfKey(session: Session, key: string): { display: DisplayState; link: string } | null {
+export function findLinkOfRow(session: Session, key: string): { display: DisplayState; link: string } | null {
   for (const display of session.displays.displays) {
     const node = display.rows.find("Links")?.children.find((child) => child.id === key && child.details === "link");
     if (node) return { display, link: node.name };
@@ -52,7 +52,7 @@ export function linkOfKey(session: Session, key: string): { display: DisplayStat
 
 /** Whether editing this row opens or closes the rows of links and joints. */
 export function isExpansion(node: PropertyNode): boolean {
-  return [STYLE, TREE, LINK_DETAILS, JOINT_DETAILS].includes(node.name) && node.id.includes("/Links/");
+  return [STYLE_ROW, EXPAND_TREE_ROW, EXPAND_LINK_DETAILS_ROW, EXPAND_JOINT_DETAILS_ROW].includes(node.name) && node.id.includes("/Links/");
 }
 
 function isRobotRow(node: PropertyNode): boolean {
@@ -85,10 +85,10 @@ class RobotTree {
     private readonly set: SetValue,
   ) {
     this.options = display.rows.find("Links");
-    const standard = { title: "Links", isTree: false, hasLinks: true, hasJoints: false };
-    this.style = STYLES[display.rows.text("", "Links", STYLE)] ?? standard;
-    const mapNodes = (group: string): ReadonlyMap<string, PropertyNode> =>
-      new Map(display.rows.find(group)?.children.filter((row) => row.details).map((row) => [row.name, row]));
+    const defaultStyle = { title: "Links", isTree: false, hasLinks: true, hasJoints: false };
+    this.style = STYLES[display.rows.text("", "Links", STYLE_ROW)] ?? defaultStyle;
+    const mapNodes = (detailsRow: string): ReadonlyMap<string, PropertyNode> =>
+      new Map(display.rows.find(detailsRow)?.children.filter((row) => row.details).map((row) => [row.name, row]));
     this.links = mapNodes("Links");
     this.joints = mapNodes("Joints");
     for (const joint of robot.joints) {
@@ -99,13 +99,13 @@ class RobotTree {
   }
 
   /** The top row. */
-  get top(): TreeItem {
+  get topRow(): TreeItem {
     const { options, style } = this;
     const isShown = (node: PropertyNode): boolean =>
       node.details === null &&
-      (node.name !== TREE || style.isTree) &&
-      (node.name !== LINK_DETAILS || style.hasLinks) &&
-      (node.name !== JOINT_DETAILS || style.hasJoints);
+      (node.name !== EXPAND_TREE_ROW || style.isTree) &&
+      (node.name !== EXPAND_LINK_DETAILS_ROW || style.hasLinks) &&
+      (node.name !== EXPAND_JOINT_DETAILS_ROW || style.hasJoints);
     return {
       key: options?.id ?? "",
       name: style.title,
@@ -138,31 +138,31 @@ class RobotTree {
       return [...nodes.values()].map((node) => this.createRow(node, () => []));
     }
     const children = new Set(this.robot.joints.map((joint) => joint.child));
-    return this.robot.links.filter((link) => !children.has(link.name)).flatMap((link) => this.linkRow(link.name));
+    return this.robot.links.filter((link) => !children.has(link.name)).flatMap((link) => this.createLinkRows(link.name));
   }
 
-  private linkRow(link: string): TreeItem[] {
+  private createLinkRows(link: string): TreeItem[] {
     const node = this.links.get(link);
-    const createChildRows = (): TreeItem[] => (this.jointsByParent.get(link) ?? []).flatMap((joint) => this.createJointRow(joint));
+    const createChildRows = (): TreeItem[] => (this.jointsByParent.get(link) ?? []).flatMap((joint) => this.createJointRows(joint));
     return node ? [this.createRow(node, createChildRows)] : createChildRows();
   }
 
-  private createJointRow(joint: JointScene): TreeItem[] {
+  private createJointRows(joint: JointScene): TreeItem[] {
     const node = this.style.hasJoints ? this.joints.get(joint.name) : undefined;
-    if (!node) return this.linkRow(joint.child);
-    return [this.createRow(node, () => this.linkRow(joint.child))];
+    if (!node) return this.createLinkRows(joint.child);
+    return [this.createRow(node, () => this.createLinkRows(joint.child))];
   }
 
   /** Returns the row of a link or joint. In a tree, its details are below a row of their own. */
   private createRow(node: PropertyNode, createChildRows: () => TreeItem[]): TreeItem {
     const { rows } = this.display;
     const { isTree } = this.style;
-    const isOpen = rows.bool(false, "Links", node.details === "link" ? LINK_DETAILS : JOINT_DETAILS);
+    const isOpen = rows.bool(false, "Links", node.details === "link" ? EXPAND_LINK_DETAILS_ROW : EXPAND_JOINT_DETAILS_ROW);
     const createDetails = (): TreeItem[] => [
       ...node.children.map((child) => createPropertyItem(child, this.set)),
       ...createDetailRows(node, this.display, this.session),
     ];
-    const group: TreeItem = {
+    const detailsRow: TreeItem = {
       key: `${node.id}#Details`,
       name: "Details",
       kind: "group",
@@ -173,8 +173,8 @@ class RobotTree {
     };
     return {
       ...createPropertyItem(node, this.set),
-      isExpanded: isTree ? rows.bool(false, "Links", TREE) : isOpen,
-      children: () => (isTree ? [group, ...createChildRows()] : createDetails()),
+      isExpanded: isTree ? rows.bool(false, "Links", EXPAND_TREE_ROW) : isOpen,
+      children: () => (isTree ? [detailsRow, ...createChildRows()] : createDetails()),
     };
   }
 }

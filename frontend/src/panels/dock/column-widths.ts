@@ -1,9 +1,9 @@
 import type { DockviewApi, DockviewGroupPanel } from "dockview";
 import { formOf } from "./default-layout";
 
-const SCENE = "scene";
+const SCENE_ID = "scene";
 /** Pixels; if less would remain for the scene, the dock's own distribution stays. */
-const MIN_SCENE_WIDTH = 160;
+const MIN_SCENE_WIDTH_PX = 160;
 
 /**
  * Keeps the widths of the columns beside the scene when panels are opened and closed: the scene gets or gives the
@@ -32,29 +32,29 @@ export class ColumnWidths {
 
   private restore(): void {
     const columns = this.listColumns();
-    const scene = columns.findIndex((group) => hasScene(group));
+    const sceneIndex = columns.findIndex((group) => hasScene(group));
     const widths = columns.map(({ id, width }) => this.widths.get(id) ?? width);
-    const sceneWidth = this.api.width - widths.reduce((sum, width, i) => (i === scene ? sum : sum + width), 0);
-    if (scene < 0 || sceneWidth < MIN_SCENE_WIDTH) return;
-    widths[scene] = sceneWidth;
+    const sceneWidth = this.api.width - widths.reduce((sum, width, i) => (i === sceneIndex ? sum : sum + width), 0);
+    if (sceneIndex < 0 || sceneWidth < MIN_SCENE_WIDTH_PX) return;
+    widths[sceneIndex] = sceneWidth;
     // Each resized column takes the difference from the last column, so the last column also ends at its own width.
     for (const [i, group] of columns.slice(0, -1).entries()) group.api.setSize({ width: widths[i] ?? group.width });
   }
 
   /** Returns one group of each column, from the left; for the scene's column, the scene's group. */
   private listColumns(): DockviewGroupPanel[] {
-    const boxes = this.api.groups.map((group) => ({ group, box: group.element.getBoundingClientRect() }));
-    const scene = boxes.find(({ group }) => hasScene(group))?.box;
-    const columns: typeof boxes = [];
-    for (const candidate of boxes.sort((a, b) => a.box.left - b.box.left)) {
-      const { group, box } = candidate;
-      const overlaps = (otherBox: DOMRect): boolean => box.left < otherBox.right - 1 && otherBox.left < box.right - 1;
-      if (hasScene(group) || !(scene && overlaps(scene)) && !columns.some((column) => overlaps(column.box))) columns.push(candidate);
+    const groupRects = this.api.groups.map((group) => ({ group, rect: group.element.getBoundingClientRect() }));
+    const sceneRect = groupRects.find(({ group }) => hasScene(group))?.rect;
+    const columns: typeof groupRects = [];
+    for (const candidate of groupRects.sort((a, b) => a.rect.left - b.rect.left)) {
+      const { group, rect } = candidate;
+      const overlaps = (otherRect: DOMRect): boolean => rect.left < otherRect.right - 1 && otherRect.left < rect.right - 1;
+      if (hasScene(group) || !(sceneRect && overlaps(sceneRect)) && !columns.some((column) => overlaps(column.rect))) columns.push(candidate);
     }
     return columns.map(({ group }) => group);
   }
 }
 
 function hasScene(group: DockviewGroupPanel): boolean {
-  return group.panels.some(({ id }) => id === SCENE);
+  return group.panels.some(({ id }) => id === SCENE_ID);
 }

@@ -4,20 +4,20 @@ import type { DisplayPanel, PanelHost } from "../../scene/displays/display-panel
 import { formOf } from "./default-layout";
 import { PanelTab } from "./panel-tab";
 
-const PREFIX = "display:";
-const HEIGHT = 220;
+const KEY_PREFIX = "display:";
+const PANEL_HEIGHT_PX = 220;
 /** The largest share of the window's height for a panel. */
 const MAX_HEIGHT_SHARE = 0.3;
 /** The number of panels below the Displays panel; further ones become tabs of these. */
-const MAX_BELOW = 2;
+const MAX_PANELS_BELOW = 2;
 /**
  * Pixels; in a narrow window of at least this width, the first panel opens beside the scene with this share of the
  * width.
  */
-const MIN_SPLIT_WIDTH = 600;
+const MIN_SPLIT_WIDTH_PX = 600;
 const SPLIT_SHARE = 0.42;
 /** Pixels; in a lower window, only one panel opens below the Displays panel. */
-const LOW = 700;
+const MIN_TWO_PANEL_HEIGHT_PX = 700;
 
 interface Placement {
   neighbor: string | undefined;
@@ -32,9 +32,9 @@ export class DisplayPanels implements PanelHost {
   private readonly hosts = new Map<string, HTMLElement>();
   private readonly panels = new Map<string, DisplayPanel>();
   /** The panels to bring to the front when their displays offer them; the value is whether they replace the scene. */
-  private readonly requested = new Map<string, boolean>();
+  private readonly requestedPanels = new Map<string, boolean>();
   /** The keys of the panels whose places no stored arrangement specifies. */
-  private readonly placed = new Set<string>();
+  private readonly defaultPlacedKeys = new Set<string>();
 
   /** `api` is a function because the dock creates contents while it is itself being created. */
   constructor(private readonly getApi: () => DockviewApi) {}
@@ -47,10 +47,10 @@ export class DisplayPanels implements PanelHost {
     } else {
       this.add(panel);
     }
-    const replacesScene = this.requested.get(panel.key);
+    const replacesScene = this.requestedPanels.get(panel.key);
     if (replacesScene === undefined) return;
-    this.requested.delete(panel.key);
-    this.bringToFront(panel.key.slice(PREFIX.length), replacesScene);
+    this.requestedPanels.delete(panel.key);
+    this.bringToFront(panel.key.slice(KEY_PREFIX.length), replacesScene);
   }
 
   /**
@@ -58,16 +58,16 @@ export class DisplayPanels implements PanelHost {
    * scene moves there, unless a stored arrangement specifies its place.
    */
   bringToFront(display: string, replacesScene: boolean): void {
-    const key = PREFIX + display;
+    const key = KEY_PREFIX + display;
     const api = this.getApi();
     const panel = this.panels.has(key) ? api.getPanel(key) : undefined;
     if (!panel) {
-      this.requested.set(key, replacesScene);
+      this.requestedPanels.set(key, replacesScene);
       return;
     }
     const scene = api.getPanel("scene");
-    if (replacesScene && scene && this.placed.has(key)) {
-      const isShared = api.panels.some(({ id, group }) => id !== key && id.startsWith(PREFIX) && group === scene.group);
+    if (replacesScene && scene && this.defaultPlacedKeys.has(key)) {
+      const isShared = api.panels.some(({ id, group }) => id !== key && id.startsWith(KEY_PREFIX) && group === scene.group);
       panel.api.moveTo({ group: scene.group, position: isShared ? "right" : "center" });
     }
     panel.api.setActive();
@@ -75,7 +75,7 @@ export class DisplayPanels implements PanelHost {
 
   withdraw(key: string): void {
     this.panels.delete(key);
-    this.placed.delete(key);
+    this.defaultPlacedKeys.delete(key);
     this.remove(key);
   }
 
@@ -85,8 +85,8 @@ export class DisplayPanels implements PanelHost {
 
   /** Removes the panels of displays that are not in the list. */
   prune(displays: readonly string[]): void {
-    const keys = new Set(displays.map((id) => PREFIX + id));
-    for (const { id } of [...this.getApi().panels]) if (id.startsWith(PREFIX) && !keys.has(id)) this.withdraw(id);
+    const keys = new Set(displays.map((id) => KEY_PREFIX + id));
+    for (const { id } of [...this.getApi().panels]) if (id.startsWith(KEY_PREFIX) && !keys.has(id)) this.withdraw(id);
   }
 
   /** Adds all panels again after the arrangement was cleared. */
@@ -96,13 +96,13 @@ export class DisplayPanels implements PanelHost {
 
   /** Returns the content of a panel for the dock; null for a panel that belongs to no display. */
   createContent(name: string): IContentRenderer | null {
-    if (!name.startsWith(PREFIX)) return null;
+    if (!name.startsWith(KEY_PREFIX)) return null;
     return { element: this.ensureHost(name), init: () => undefined };
   }
 
   /** Returns the tab of a panel; null for a panel that belongs to no display. */
   createTab(key: string): PanelTab | null {
-    if (!key.startsWith(PREFIX)) return null;
+    if (!key.startsWith(KEY_PREFIX)) return null;
     const close = (): void => {
       const panel = this.panels.get(key);
       if (panel) panel.onClosed();
@@ -113,10 +113,10 @@ export class DisplayPanels implements PanelHost {
 
   private add(panel: DisplayPanel): void {
     const { key, title, element } = panel;
-    this.placed.add(key);
+    this.defaultPlacedKeys.add(key);
     this.ensureHost(key).replaceChildren(element);
-    const openPanels = this.getApi().panels.filter(({ id }) => id.startsWith(PREFIX));
-    const placement = this.place(panel, openPanels.at(-1)?.id, openPanels.length);
+    const openPanels = this.getApi().panels.filter(({ id }) => id.startsWith(KEY_PREFIX));
+    const placement = this.choosePlacement(panel, openPanels.at(-1)?.id, openPanels.length);
     const { width, height, isInactive } = placement;
     const options: AddPanelOptions = { id: key, component: key, tabComponent: key, title };
     if (width !== undefined) options.initialWidth = width;
@@ -130,22 +130,22 @@ export class DisplayPanels implements PanelHost {
     for (const entry of [...previousHeights, { group, height }]) entry.group.api.setSize({ height: entry.height });
   }
 
-  /** Returns the place of a new panel, after `count` others. */
-  private place({ replacesScene }: DisplayPanel, lastPanel: string | undefined, count: number): Placement {
+  /** Returns the place of a new panel, after `panelCount` others. */
+  private choosePlacement({ replacesScene }: DisplayPanel, lastPanel: string | undefined, panelCount: number): Placement {
     const api = this.getApi();
     const form = formOf(api);
     const isNarrow = form !== "wide";
     // Where all panels share a group, a new image must not hide the panel that the user works with.
-    const sharesGroup = form === "low" || (isNarrow && api.width < MIN_SPLIT_WIDTH);
-    const maxPanels = isNarrow || api.height < LOW ? 1 : MAX_BELOW;
-    if (lastPanel !== undefined && replacesScene && count < MAX_BELOW) return { neighbor: lastPanel, direction: "right" };
-    if (lastPanel !== undefined && count >= maxPanels) return { neighbor: lastPanel, direction: "within", isInactive: sharesGroup && !replacesScene };
+    const sharesGroup = form === "low" || (isNarrow && api.width < MIN_SPLIT_WIDTH_PX);
+    const maxPanels = isNarrow || api.height < MIN_TWO_PANEL_HEIGHT_PX ? 1 : MAX_PANELS_BELOW;
+    if (lastPanel !== undefined && replacesScene && panelCount < MAX_PANELS_BELOW) return { neighbor: lastPanel, direction: "right" };
+    if (lastPanel !== undefined && panelCount >= maxPanels) return { neighbor: lastPanel, direction: "within", isInactive: sharesGroup && !replacesScene };
     const scene = api.getPanel("scene") && "scene";
     if (replacesScene && scene) return { neighbor: scene, direction: "within" };
     if (isNarrow && !sharesGroup && scene) return { neighbor: scene, direction: "right", width: Math.round(api.width * SPLIT_SHARE) };
     const neighbor = api.getPanel("displays") ? "displays" : scene;
     if (sharesGroup) return { neighbor, direction: "within", isInactive: neighbor !== undefined };
-    return { neighbor, direction: "below", height: Math.min(HEIGHT, Math.round(api.height * MAX_HEIGHT_SHARE)) };
+    return { neighbor, direction: "below", height: Math.min(PANEL_HEIGHT_PX, Math.round(api.height * MAX_HEIGHT_SHARE)) };
   }
 
   private remove(key: string): void {

@@ -5,7 +5,7 @@ import type { TextStorage } from "../../storage";
 import { strings } from "../../strings";
 import type { Panel, PanelId } from "../panel";
 import { ColumnWidths } from "./column-widths";
-import { addPanels, CLASSROOM_PANELS, formOf, DEFAULT_ORDER, type Form } from "./default-layout";
+import { addPanels, CLASSROOM_PANELS, formOf, DEFAULT_ORDER, type WindowForm } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import { FILE_PANELS } from "./file-panels";
 import { FrontTabs } from "./front-tabs";
@@ -20,7 +20,8 @@ export class Dock {
   /** Emitted when a panel is opened, closed, moved or brought to the front. */
   readonly changed = new Signal();
   /**
-   * Emitted when the arrangement is replaced: titles must be set again, and panels that depend on data opened or closed.
+   * Emitted when the arrangement is replaced: titles must be set again, and panels that depend on data opened or
+   * closed.
    */
   readonly arrangementReplaced = new Signal();
   /** The panels that the file shows, for `reset`; null if it does not specify them. */
@@ -33,14 +34,14 @@ export class Dock {
   readonly displayPanels = new DisplayPanels(() => this.api);
   readonly strip: TimeStrip;
   private readonly api: DockviewApi;
-  private readonly widths: ColumnWidths;
+  private readonly columnWidths: ColumnWidths;
   private readonly sceneTab: SceneTab;
   private readonly frontTabs: FrontTabs;
   private readonly panels: ReadonlyMap<string, Panel>;
   private readonly tabs = new Map<string, PanelTab>();
   /** The numbers in the titles, also of closed panels. */
   private readonly counts = new Map<PanelId, number>();
-  private form: Form;
+  private form: WindowForm;
 
   constructor(
     parent: HTMLElement,
@@ -57,7 +58,7 @@ export class Dock {
       noPanelsOverlay: "emptyGroup",
       messages: { panelOpened: strings.shell.panelOpened, panelClosed: strings.shell.panelClosed },
     });
-    this.widths = new ColumnWidths(this.api);
+    this.columnWidths = new ColumnWidths(this.api);
     this.strip = new TimeStrip(this.api, storage);
     this.sceneTab = new SceneTab(this.api);
     this.frontTabs = new FrontTabs(this.api);
@@ -70,10 +71,10 @@ export class Dock {
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
     this.hideLoneTabs();
-    this.widths.remember();
+    this.columnWidths.remember();
     this.api.onDidLayoutChange(() => {
       this.hideLoneTabs();
-      this.widths.restoreAfterChange();
+      this.columnWidths.restoreAfterChange();
       this.remember();
       this.changed.emit();
     });
@@ -145,7 +146,7 @@ export class Dock {
     }
     this.hideLoneTabs();
     this.displayPanels.restore();
-    this.widths.remember();
+    this.columnWidths.remember();
     this.arrangementReplaced.emit();
     return true;
   }
@@ -162,7 +163,7 @@ export class Dock {
       if (panels.includes(id)) this.add(id);
       else this.close(id);
     }
-    this.widths.restoreAfterChange();
+    this.columnWidths.restoreAfterChange();
   }
 
   private add(id: PanelId): void {
@@ -177,7 +178,7 @@ export class Dock {
     this.retitle();
     this.hideLoneTabs();
     this.displayPanels.restore();
-    this.widths.remember();
+    this.columnWidths.remember();
   }
 
   /** Hides the tabs of panels that are alone in their group and need no tab. */

@@ -79,7 +79,7 @@ export class FilePanels {
       this.hasCourse = true;
       this.openCourse();
     });
-    dock.changed.on(() => this.compare());
+    dock.changed.on(() => this.sendOpenPanels());
   }
 
   /** Opens the Teleop panel for a simulated robot that can be driven, unless the arrangement is specified. */
@@ -129,7 +129,7 @@ export class FilePanels {
     this.openCourse();
   }
 
-  private compare(): void {
+  private sendOpenPanels(): void {
     const openPanels = this.openPanels;
     if (this.lastOpenPanels === null || String(openPanels) === String(this.lastOpenPanels)) return;
     this.lastOpenPanels = openPanels;

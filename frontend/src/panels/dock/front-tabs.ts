@@ -2,7 +2,7 @@ import type { DockviewApi } from "dockview";
 
 /** Keeps the tab of each front panel fully visible where a group's tabs do not fit into its bar. */
 export class FrontTabs {
-  private readonly resizeObserver = new ResizeObserver(() => this.show());
+  private readonly resizeObserver = new ResizeObserver(() => this.scrollToFrontTabs());
 
   constructor(private readonly api: DockviewApi) {}
 
@@ -11,16 +11,16 @@ export class FrontTabs {
     this.resizeObserver.disconnect();
     // The dock's button for hidden tabs appears later and takes some of the bar's width.
     for (const bar of this.listTabBars()) this.resizeObserver.observe(bar);
-    this.show();
+    this.scrollToFrontTabs();
   }
 
-  private show(): void {
+  private scrollToFrontTabs(): void {
     for (const bar of this.listTabBars()) {
       const tab = bar.querySelector(".dv-active-tab");
       if (!tab) continue;
-      const [barBox, tabBox] = [bar.getBoundingClientRect(), tab.getBoundingClientRect()];
-      if (tabBox.left < barBox.left) bar.scrollLeft -= barBox.left - tabBox.left;
-      else if (tabBox.right > barBox.right) bar.scrollLeft += Math.ceil(tabBox.right - barBox.right);
+      const [barRect, tabRect] = [bar.getBoundingClientRect(), tab.getBoundingClientRect()];
+      if (tabRect.left < barRect.left) bar.scrollLeft -= barRect.left - tabRect.left;
+      else if (tabRect.right > barRect.right) bar.scrollLeft += Math.ceil(tabRect.right - barRect.right);
     }
   }
 

@@ -1,15 +1,15 @@
 import type { SerializedDockview } from "dockview";
 import type { TextStorage } from "../../storage";
-import type { Form } from "./default-layout";
+import type { WindowForm } from "./default-layout";
 
 /** An arrangement of panels, with the file and the form of window that it is stored for. */
 export interface Layout {
   file: string;
-  form: Form;
+  form: WindowForm;
   arrangement: SerializedDockview;
 }
 
-const KEY = "linkwright.layouts.3";
+const STORAGE_KEY = "linkwright.layouts.3";
 /** The number of stored arrangements; beyond it, the browser drops the least recently used one. */
 const MAX_LAYOUTS = 12;
 
@@ -18,23 +18,23 @@ export class Layouts {
   constructor(private readonly storage: TextStorage) {}
 
   /** Returns the most recent arrangement for a form of window; its file does not matter. */
-  findLatest(form: Form): Layout | null {
+  findLatest(form: WindowForm): Layout | null {
     return this.read().find((layout) => layout.form === form) ?? null;
   }
 
-  find(file: string, form: Form): Layout | null {
+  find(file: string, form: WindowForm): Layout | null {
     return this.read().find((layout) => layout.file === file && layout.form === form) ?? null;
   }
 
   store(layout: Layout): void {
     // Read again each time: another tab may have stored another arrangement.
     const otherLayouts = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
-    this.storage.setItem(KEY, JSON.stringify([layout, ...otherLayouts].slice(0, MAX_LAYOUTS)));
+    this.storage.setItem(STORAGE_KEY, JSON.stringify([layout, ...otherLayouts].slice(0, MAX_LAYOUTS)));
   }
 
   private read(): Layout[] {
     try {
-      const layouts: unknown = JSON.parse(this.storage.getItem(KEY) ?? "[]");
+      const layouts: unknown = JSON.parse(this.storage.getItem(STORAGE_KEY) ?? "[]");
       return Array.isArray(layouts) ? layouts.filter(isLayout) : [];
     } catch {
       return [];

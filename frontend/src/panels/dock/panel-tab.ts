@@ -1,6 +1,6 @@
 import type { ITabRenderer, TabPartInitParameters } from "dockview";
 import { h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createIcon, type IconName } from "../../icons";
 import { strings } from "../../strings";
 
 /** A panel's tab: icon, title and, if the panel can be closed, a close button. */
@@ -20,7 +20,7 @@ export class PanelTab implements ITabRenderer {
   init({ title, api }: TabPartInitParameters): void {
     this.title.textContent = title;
     api.onDidTitleChange((event) => (this.title.textContent = event.title));
-    this.element.append(icon(this.iconName), this.title);
+    this.element.append(createIcon(this.iconName), this.title);
     if (!this.isClosable) return;
     this.close = () => {
       if (this.onClose) this.onClose();
@@ -28,10 +28,10 @@ export class PanelTab implements ITabRenderer {
       return true;
     };
     // A tab cannot contain another focusable element: keyboard users close the panel with Delete.
-    const cross = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, icon("close"));
+    const closeIcon = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, createIcon("close"));
     // Pressing the close button must not start a drag of the tab.
-    cross.addEventListener("pointerdown", (event) => event.stopPropagation());
-    cross.addEventListener("click", () => this.close());
-    this.element.append(cross);
+    closeIcon.addEventListener("pointerdown", (event) => event.stopPropagation());
+    closeIcon.addEventListener("click", () => this.close());
+    this.element.append(closeIcon);
   }
 }

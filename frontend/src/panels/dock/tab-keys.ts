@@ -1,6 +1,6 @@
 import type { PanelTab } from "./panel-tab";
 
-const CLOSE = ["Delete", "Backspace"];
+const CLOSE_KEYS = ["Delete", "Backspace"];
 
 /**
  * Binds Delete on a tab to closing its panel; the focus then moves to the next tab.
@@ -12,13 +12,13 @@ export function bindTabKeys(dock: HTMLElement, tabOf: (panel: string) => PanelTa
     "keydown",
     (event) => {
       const tab = event.target;
-      if (!(tab instanceof HTMLElement) || tab.role !== "tab" || !CLOSE.includes(event.key)) return;
+      if (!(tab instanceof HTMLElement) || tab.role !== "tab" || !CLOSE_KEYS.includes(event.key)) return;
       const panel = tab.dataset["tabPanelId"];
       if (panel === undefined) return;
       event.preventDefault();
       event.stopPropagation();
-      const next = tab.nextElementSibling ?? tab.previousElementSibling;
-      if (tabOf(panel)?.close() === true && next instanceof HTMLElement) next.focus();
+      const neighborTab = tab.nextElementSibling ?? tab.previousElementSibling;
+      if (tabOf(panel)?.close() === true && neighborTab instanceof HTMLElement) neighborTab.focus();
     },
     true,
   );

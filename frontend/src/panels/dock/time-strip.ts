@@ -1,11 +1,11 @@
 import type { DockviewApi, DockviewGroupPanel } from "dockview";
 import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
-import { TIME_HEIGHT } from "./default-layout";
+import { TIME_HEIGHT_PX } from "./default-layout";
 
 /** Pixels: the dock's default for groups. */
-const MIN_GROUP_HEIGHT = 100;
-const KEY = "linkwright.time-fields";
+const MIN_GROUP_HEIGHT_PX = 100;
+const STORAGE_KEY = "linkwright.time-fields";
 
 /**
  * Shows the Time panel as a strip of one line without a tab while it is alone in its group; the strip is hidden until
@@ -21,7 +21,7 @@ export class TimeStrip {
     private readonly api: DockviewApi,
     private readonly storage: TextStorage,
   ) {
-    this.isOpen = storage.getItem(KEY) === "shown";
+    this.isOpen = storage.getItem(STORAGE_KEY) === "shown";
   }
 
   /** Whether there is a strip, folded or not. */
@@ -36,8 +36,8 @@ export class TimeStrip {
   /** Shows or hides the strip. */
   setUnfolded(isUnfolded: boolean): void {
     this.isOpen = isUnfolded;
-    this.storage.setItem(KEY, isUnfolded ? "shown" : "hidden");
-    this.show();
+    this.storage.setItem(STORAGE_KEY, isUnfolded ? "shown" : "hidden");
+    this.applyVisibility();
     this.changed.emit();
   }
 
@@ -51,22 +51,22 @@ export class TimeStrip {
       this.strip.api.setVisible(true);
       this.strip.header.hidden = false;
       this.strip.element.classList.remove("strip");
-      this.strip.api.setConstraints({ minimumHeight: MIN_GROUP_HEIGHT, maximumHeight: Number.MAX_SAFE_INTEGER });
+      this.strip.api.setConstraints({ minimumHeight: MIN_GROUP_HEIGHT_PX, maximumHeight: Number.MAX_SAFE_INTEGER });
     }
     this.strip = strip;
     if (strip) {
       strip.header.hidden = true;
       strip.element.classList.add("strip");
-      strip.api.setConstraints({ minimumHeight: TIME_HEIGHT, maximumHeight: TIME_HEIGHT });
-      this.show();
+      strip.api.setConstraints({ minimumHeight: TIME_HEIGHT_PX, maximumHeight: TIME_HEIGHT_PX });
+      this.applyVisibility();
     }
     this.changed.emit();
   }
 
-  private show(): void {
+  private applyVisibility(): void {
     const { strip } = this;
     if (!strip) return;
     if (strip.api.isVisible !== this.isOpen) strip.api.setVisible(this.isOpen);
-    if (this.isOpen) strip.api.setSize({ height: TIME_HEIGHT });
+    if (this.isOpen) strip.api.setSize({ height: TIME_HEIGHT_PX });
   }
 }

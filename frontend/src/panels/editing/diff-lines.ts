@@ -9,21 +9,21 @@ export interface DiffLine {
 
 /** Returns the lines of a unified diff. Where lines replace an equal number of lines, the differing part is marked. */
 export function parseDiff(lines: readonly string[]): DiffLine[] {
-  const result: DiffLine[] = [];
+  const diffLines: DiffLine[] = [];
   for (let index = 0; index < lines.length; ) {
     const removedLines = takeRun(lines, index, "-");
     const addedLines = takeRun(lines, index + removedLines.length, "+");
     if (removedLines.length > 0 && removedLines.length === addedLines.length) {
       const pairs = removedLines.map((line, i) => markDifference(line.slice(1), addedLines[i]?.slice(1) ?? ""));
-      result.push(...pairs.map(([removedLine]) => removedLine), ...pairs.map(([, addedLine]) => addedLine));
+      diffLines.push(...pairs.map(([removedLine]) => removedLine), ...pairs.map(([, addedLine]) => addedLine));
       index += 2 * removedLines.length;
     } else {
       const line = lines[index] ?? "";
-      result.push({ sign: line.slice(0, 1), before: line.slice(1), difference: "", after: "" });
+      diffLines.push({ sign: line.slice(0, 1), before: line.slice(1), difference: "", after: "" });
       index += 1;
     }
   }
-  return result;
+  return diffLines;
 }
 
 function takeRun(lines: readonly string[], start: number, sign: string): readonly string[] {

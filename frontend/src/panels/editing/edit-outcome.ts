@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { DiagnosticItem, EditedFile } from "../../protocol";
 import type { EditingState } from "../../state/editing/editing";
 import { strings } from "../../strings";
@@ -7,7 +7,7 @@ import { shortenPath } from "../place";
 import { parseDiff } from "./diff-lines";
 
 /** The number of characters shown before and after the difference, in a long line or a low panel. */
-const [NEAR_BEFORE, NEAR_AFTER] = [16, 10];
+const [CONTEXT_BEFORE, CONTEXT_AFTER] = [16, 10];
 /** The maximum number of characters of a line that is shown complete where there is room. */
 const MAX_SHORT_LINE = 90;
 
@@ -23,11 +23,11 @@ export class EditOutcome {
 
   constructor(private readonly editing: EditingState) {
     const texts = strings.editing;
-    this.applyButton = button(texts.applyHint, () => editing.apply(), "tool framed primary", texts.apply);
-    this.discardButton = button(texts.dropHint, () => editing.reset(), "tool framed", texts.drop);
-    this.changeAllButton = button(texts.allHint, () => editing.changeAll(), "tool framed", texts.all);
-    this.undoButton = button(texts.undo, () => editing.undo(), "tool bare", icon("undo"));
-    this.redoButton = button(texts.redo, () => editing.redo(), "tool bare", icon("redo"));
+    this.applyButton = createButton(texts.applyHint, () => editing.apply(), "tool framed primary", texts.apply);
+    this.discardButton = createButton(texts.dropHint, () => editing.discardDraft(), "tool framed", texts.drop);
+    this.changeAllButton = createButton(texts.allHint, () => editing.changeAll(), "tool framed", texts.all);
+    this.undoButton = createButton(texts.undo, () => editing.undo(), "tool bare", createIcon("undo"));
+    this.redoButton = createButton(texts.redo, () => editing.redo(), "tool bare", createIcon("redo"));
     const bar = h("div", { class: "edit-bar" }, this.applyButton, this.discardButton, this.changeAllButton, h("span", { class: "spacer" }), this.undoButton, this.redoButton);
     this.element = h("div", { class: "edit-outcome" }, this.text, bar);
     editing.changed.on(() => this.show());
@@ -38,24 +38,24 @@ export class EditOutcome {
   private show(): void {
     const { editing } = this;
     const texts = strings.editing;
-    const { preview, refusal, isOpen, writtenFiles } = editing;
+    const { preview, refusal, isDraftOpen, writtenFiles } = editing;
     const formatWritten = editing.isWrittenToText ? texts.writtenToText : texts.written;
-    this.applyButton.disabled = !isOpen || (preview?.files.length ?? 0) === 0;
-    this.discardButton.disabled = !isOpen;
-    this.changeAllButton.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isChangeOfAll;
+    this.applyButton.disabled = !isDraftOpen || (preview?.files.length ?? 0) === 0;
+    this.discardButton.disabled = !isDraftOpen;
+    this.changeAllButton.hidden = !isDraftOpen || preview?.refusal?.code !== "EDIT104" || editing.isForAllElements;
     this.undoButton.disabled = !editing.canUndo;
     this.redoButton.disabled = !editing.canRedo;
     if (refusal) this.text.replaceChildren(createRefusal(refusal));
     else if (preview?.refusal) this.text.replaceChildren(createRefusal(preview.refusal));
-    else if (preview) this.text.replaceChildren(...createAlsoChanged(preview.also), ...preview.files.map(createDiff));
-    else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, texts.looking));
+    else if (preview) this.text.replaceChildren(...createAlsoChangedNote(preview.also), ...preview.files.map(createDiff));
+    else if (isDraftOpen) this.text.replaceChildren(h("p", { class: "hint" }, texts.looking));
     else if (writtenFiles.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, formatWritten(writtenFiles.map((file) => shortenPath(file)).join(", "))));
     else this.text.replaceChildren(h("p", { class: "hint" }, texts.idle));
     this.element.classList.toggle("refused", refusal !== null || (preview?.refusal ?? null) !== null);
   }
 }
 
-function createAlsoChanged(names: readonly string[]): HTMLElement[] {
+function createAlsoChangedNote(names: readonly string[]): HTMLElement[] {
   return names.length === 0 ? [] : [h("p", { class: "edit-also" }, strings.editing.also(names.join(", ")))];
 }
 
@@ -64,7 +64,7 @@ function createDiff({ file, diff: lines }: EditedFile): HTMLElement {
   const rows = parseDiff(lines).map(({ sign, before, difference, after }) => {
     const kind = kinds[sign] ?? "around";
     if (kind === "at" || kind === "around") return h("span", { class: kind }, `${sign}${before}\n`);
-    const [start, end] = [Math.max(0, before.length - NEAR_BEFORE), Math.min(after.length, NEAR_AFTER)];
+    const [start, end] = [Math.max(0, before.length - CONTEXT_BEFORE), Math.min(after.length, CONTEXT_AFTER)];
     const parts = [createDistantText(before.slice(0, start)), before.slice(start), h("mark", {}, difference), after.slice(0, end), createDistantText(after.slice(end))];
     return h("span", { class: kind }, sign, ...parts, "\n");
   });

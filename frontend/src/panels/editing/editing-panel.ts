@@ -1,8 +1,8 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { EditablePart } from "../../protocol";
 import type { HandleFrame } from "../../state/editing/editing";
-import { ANGLE_STEPS } from "../../state/modeling/snapping";
+import { ANGLE_STEPS_DEG } from "../../state/modeling/snapping";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { formatNumber, parseNumber } from "../../tree/numbers";
@@ -13,10 +13,10 @@ import type { Panel } from "../panel";
 import { shortenPath } from "../place";
 import { EditOutcome } from "./edit-outcome";
 
-/** m */
+/** The lengths to choose from for the grid, m. */
 const LENGTH_STEPS_M = [0.001, 0.005, 0.01, 0.05, 0.1] as const;
 /** The steps of an arrow key: m or a component of an axis; rad where angles are shown in rad, and in degrees. */
-const [MOVE_STEP, TURN_STEP, DEGREE_STEP] = [0.001, 0.01, Math.PI / 180];
+const [LENGTH_KEY_STEP, RADIAN_KEY_STEP, DEGREE_KEY_STEP] = [0.001, 0.01, Math.PI / 180];
 
 /** A number field; `isTyped` while the user has not finished typing. */
 interface NumberInput {
@@ -33,7 +33,7 @@ export class EditingPanel implements Panel {
   private readonly hint = h("p", { class: "hint editing-hint" });
   private readonly workArea = h("div", { class: "editing-work" });
   private readonly list = h("div", { class: "editing-parts", role: "group", aria: { label: strings.editing.parts } });
-  private readonly place = h("div", { class: "editing-place" });
+  private readonly placeBox = h("div", { class: "editing-place" });
   private readonly fields = h("div", { class: "editing-fields" });
   private readonly modes = h("div", { class: "segmented", role: "group", aria: { label: strings.editing.handles } });
   private shownPart: EditablePart | null = null;
@@ -45,38 +45,38 @@ export class EditingPanel implements Panel {
 
   constructor(private readonly session: Session) {
     const { editing, focus, angleUnits } = session;
-    const numbers = h("div", { class: "editing-numbers" }, this.place, this.fields, this.createTools());
+    const numbers = h("div", { class: "editing-numbers" }, this.placeBox, this.fields, this.createTools());
     this.workArea.append(numbers, new EditOutcome(editing).element);
     this.element = h("div", { class: "panel editing-panel" }, h("div", { class: "editing-body" }, this.hint, this.list, this.workArea));
     const update = coalesce(() => this.update());
-    const follow = (): void => {
+    const followFocus = (): void => {
       const { current } = focus;
       const link = current && focus.linkOf(current);
-      editing.follow(current && typeof link === "string" ? { display: current.display, link } : null);
+      editing.setLink(current && typeof link === "string" ? { display: current.display, link } : null);
     };
-    holdWhileVisible(this.element, () => editing.hold(), update);
-    focus.changed.on(follow);
+    holdWhileVisible(this.element, () => editing.activate(), update);
+    focus.changed.on(followFocus);
     for (const signal of [editing.changed, editing.draftChanged, editing.snapping.changed]) signal.on(update);
     angleUnits.changed.on(() => {
       this.shownPart = null;
       this.update(); // Update immediately: the next number typed is in the new unit.
     });
-    follow();
+    followFocus();
     this.update();
   }
 
   private update(): void {
     const { editing } = this.session;
     const texts = strings.editing;
-    const { chosenPart, parts, unavailableReason: refusal, current } = editing;
-    const reason = current === null ? texts.selectLink : refusal !== "" ? refusal : "";
+    const { chosenPart, parts, unavailableReason, current } = editing;
+    const reason = current === null ? texts.selectLink : unavailableReason !== "" ? unavailableReason : "";
     this.hint.hidden = reason === "";
     this.hint.textContent = reason;
     this.workArea.hidden = this.list.hidden = current === null || parts.length === 0;
     this.list.replaceChildren(...parts.map((part) => this.createPartRow(part)));
-    if (chosenPart !== this.shownPart) this.build(chosenPart);
+    if (chosenPart !== this.shownPart) this.buildFields(chosenPart);
     for (const { input, getValue, isTyped } of this.inputs) {
-      input.disabled = refusal !== "";
+      input.disabled = unavailableReason !== "";
       if (!isTyped) input.value = formatNumber(getValue());
     }
     for (const control of this.poseControls) control.hidden = chosenPart?.part === "axis";
@@ -88,16 +88,17 @@ export class EditingPanel implements Panel {
     const { editing } = this.session;
     const isChosen = part === editing.chosenPart;
     const kind = texts.kinds[part.part];
-    const row = button(texts.choose(kind, part.title), () => editing.choose(part), "editing-part", h("strong", {}, kind), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
+    const title = part.part === "joint" || part.part === "axis" ? part.name : part.title;
+    const row = createButton(texts.choose(kind, part.title), () => editing.choosePart(part), "editing-part", h("strong", {}, kind), " ", h("span", {}, title));
     row.setAttribute("aria-pressed", String(isChosen));
     row.classList.toggle("selected", isChosen);
     return row;
   }
 
   /** Builds the fields of a part, or keeps them if it is the same part: the user may be typing. */
-  private build(part: EditablePart | null): void {
+  private buildFields(part: EditablePart | null): void {
     this.shownPart = part;
-    this.place.replaceChildren();
+    this.placeBox.replaceChildren();
     if (part) this.showPlace(part);
     const key = part ? [part.part, part.name, part.index, this.session.angleUnits.current].join(" ") : "";
     if (key === this.builtKey) return;
@@ -112,7 +113,8 @@ export class EditingPanel implements Panel {
     if (file !== "") {
       const show = (): void => this.session.description.placeRequested.emit({ file, line });
       const text = `${shortenPath(file)}:${line}`;
-      this.place.append(button(`${file}:${line}`, show, "place", icon("file"), text), h("code", { title: written }, written === "" ? texts.notWritten : written));
+      const placeButton = createButton(`${file}:${line}`, show, "place", createIcon("file"), text);
+      this.placeBox.append(placeButton, h("code", { title: written }, written === "" ? texts.notWritten : written));
     }
   }
 
@@ -148,12 +150,12 @@ export class EditingPanel implements Panel {
     };
     const apply = (): void => {
       const number = parseNumber(input.value);
-      if (numberInput.isTyped && number !== null && input.value !== formatNumber(getValue())) this.set(kind, index, number / this.scaleOf(kind));
+      if (numberInput.isTyped && number !== null && input.value !== formatNumber(getValue())) this.setValue(kind, index, number / this.scaleOf(kind));
       show();
     };
     const step = (direction: number): void => {
-      const angle = this.session.angleUnits.current === "deg" ? DEGREE_STEP : TURN_STEP;
-      this.set(kind, index, this.getValue(kind, index) + direction * (kind === "rpy" ? angle : MOVE_STEP));
+      const angle = this.session.angleUnits.current === "deg" ? DEGREE_KEY_STEP : RADIAN_KEY_STEP;
+      this.setValue(kind, index, this.getValue(kind, index) + direction * (kind === "rpy" ? angle : LENGTH_KEY_STEP));
       show();
     };
     input.addEventListener("input", () => (numberInput.isTyped = true));
@@ -175,28 +177,28 @@ export class EditingPanel implements Panel {
     return (draft ?? chosenPart)?.[kind][index] ?? 0;
   }
 
-  private set(kind: "xyz" | "rpy", index: number, value: number): void {
+  private setValue(kind: "xyz" | "rpy", index: number, value: number): void {
     const { editing } = this.session;
     const pose = editing.draft ?? editing.chosenPart;
     if (!pose) return;
     // Converting typed degrees must not add digits to the file.
     const roundedValue = Number(value.toPrecision(12));
-    editing.move({ xyz: pose.xyz, rpy: pose.rpy, [kind]: pose[kind].map((component, i) => (i === index ? roundedValue : component)) });
+    editing.setDraft({ xyz: pose.xyz, rpy: pose.rpy, [kind]: pose[kind].map((component, i) => (i === index ? roundedValue : component)) });
   }
 
   private scaleOf(kind: "xyz" | "rpy"): number {
-    return kind === "rpy" ? this.session.angleUnits.scale("revolute") : 1;
+    return kind === "rpy" ? this.session.angleUnits.scaleOf("revolute") : 1;
   }
 
   private createTools(): HTMLElement {
     const texts = strings.editing;
     const { editing, angleUnits } = this.session;
     const frameSelect = createSelect<HandleFrame>(texts.frameHint, [["parent", texts.parentFrame], ["own", texts.ownFrame]], (value) => (editing.frame = value));
-    const formatSteps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
+    const createStepOptions = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
     const { snapping } = editing;
-    const lengthSelect = createSelect(strings.modeling.lengthStep, formatSteps(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
-    const angleSelect = createSelect(strings.modeling.angleStep, formatSteps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
-    const snapButton = button(texts.snap, () => (snapping.isEnabled = !snapping.isEnabled), "tool bare", icon("magnet"));
+    const lengthSelect = createSelect(strings.modeling.lengthStep, createStepOptions(LENGTH_STEPS_M, " m"), (value) => (snapping.meters = Number(value)));
+    const angleSelect = createSelect(strings.modeling.angleStep, createStepOptions(ANGLE_STEPS_DEG, "°"), (value) => (snapping.degrees = Number(value)));
+    const snapButton = createButton(texts.snap, () => (snapping.isEnabled = !snapping.isEnabled), "tool bare", createIcon("magnet"));
     const show = (): void => {
       snapButton.setAttribute("aria-pressed", String(snapping.isEnabled));
       snapButton.classList.toggle("active", snapping.isEnabled);
@@ -214,7 +216,7 @@ export class EditingPanel implements Panel {
     const { editing } = this.session;
     const texts = strings.editing;
     const createModeButton = (mode: "translate" | "rotate"): HTMLElement => {
-      const modeButton = button(texts.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", texts.modes[mode]);
+      const modeButton = createButton(texts.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", texts.modes[mode]);
       modeButton.setAttribute("aria-pressed", String(editing.mode === mode));
       return modeButton;
     };

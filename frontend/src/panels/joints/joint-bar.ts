@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
@@ -10,8 +10,8 @@ export function createJointBar({ connection, angleUnits }: Session): HTMLElement
   return h(
     "div",
     { class: "toolbar joint-tools" },
-    button(texts.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), texts.randomize),
-    button(texts.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), texts.center),
+    createButton(texts.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", createIcon("shuffle"), texts.randomize),
+    createButton(texts.centerHint, () => connection.send({ type: "center_joints" }), "tool", createIcon("center"), texts.center),
     h("span", { class: "spacer" }),
     new UnitSwitch(angleUnits).element,
   );

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { JointControl } from "../../protocol";
 import type { AngleUnits } from "../../state/angle-unit";
 import { formatMimic } from "../../state/joint-table";
@@ -7,19 +7,19 @@ import { strings } from "../../strings";
 import { clamp, formatFixed, parseNumber } from "../../tree/numbers";
 
 /** ms for which positions from the server do not move the slider after the user moved it. */
-const SERVER_DELAY_MS = 250;
+const IGNORE_SERVER_MS = 250;
 
 /**
  * The number of characters at the end of a name that remain visible in a narrow panel: names of related joints often
  * have the same beginning, and end in `_joint`.
  */
-const VISIBLE_END = 14;
+const VISIBLE_END_LENGTH = 14;
 /** The maximum length of names that are never cut. */
 const UNCUT_LENGTH = 10;
 
 /** Splits a name into a part that may be cut, and its end, which always remains visible. */
 export function splitName(name: string): readonly [string, string] {
-  const cutLength = name.length > UNCUT_LENGTH ? name.length - Math.min(VISIBLE_END, Math.floor(name.length / 2)) : name.length;
+  const cutLength = name.length > UNCUT_LENGTH ? name.length - Math.min(VISIBLE_END_LENGTH, Math.floor(name.length / 2)) : name.length;
   return [name.slice(0, cutLength), name.slice(cutLength)];
 }
 
@@ -32,7 +32,7 @@ export class JointRow {
   private readonly limits = [h("span"), h("span")] as const;
   private readonly relation = h("span");
   private position = 0;
-  private touchedAt = -Infinity;
+  private lastMovedMs = -Infinity;
   private isDragging = false;
 
   constructor(
@@ -41,11 +41,11 @@ export class JointRow {
     private readonly onMoved: (position: number) => void,
   ) {
     const isFollower = joint.mimic !== null;
-    const halves = splitName(joint.name).map((fraction) => h("span", {}, fraction));
+    const nameParts = splitName(joint.name).map((part) => h("span", {}, part));
     // Screen readers get the whole name from the slider and the field.
-    const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...halves);
+    const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...nameParts);
     const mimicElement = isFollower
-      ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), this.relation)
+      ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, createIcon("link"), this.relation)
       : null;
     this.slider.type = "range";
     this.slider.min = String(joint.lower);
@@ -79,7 +79,7 @@ export class JointRow {
 
   /** Shows a position from the server, except while the user is moving the joint. */
   setPosition(position: number): void {
-    if (this.isDragging || performance.now() - this.touchedAt < SERVER_DELAY_MS) return;
+    if (this.isDragging || performance.now() - this.lastMovedMs < IGNORE_SERVER_MS) return;
     this.position = position;
     this.show();
   }
@@ -111,13 +111,13 @@ export class JointRow {
   }
 
   private move(position: number): void {
-    this.touchedAt = performance.now();
+    this.lastMovedMs = performance.now();
     this.position = clamp(position, this.joint.lower, this.joint.upper);
     this.show(true);
     this.onMoved(this.position);
   }
 
-  private show(replacesTyped = false): void {
+  private show(replacesTypedText = false): void {
     const { lower, upper } = this.joint;
     const fraction = upper > lower ? (this.position - lower) / (upper - lower) : 0;
     if (!this.isDragging) this.slider.value = String(this.position);
@@ -125,11 +125,11 @@ export class JointRow {
     const zeroFraction = upper > lower ? (this.joint.zero - lower) / (upper - lower) : 0;
     this.slider.style.setProperty("--zero", String(clamp(zeroFraction, 0, 1)));
     this.slider.setAttribute("aria-valuetext", `${this.format(this.position)} ${this.unit.textContent}`);
-    if (replacesTyped || document.activeElement !== this.field) this.field.value = this.format(this.position);
+    if (replacesTypedText || document.activeElement !== this.field) this.field.value = this.format(this.position);
   }
 
   private get scale(): number {
-    return this.angles.scale(this.joint.kind);
+    return this.angles.scaleOf(this.joint.kind);
   }
 
   private get unitName(): string {

@@ -1,4 +1,4 @@
-import { button, coalesce, h } from "../../dom";
+import { createButton, coalesce, h } from "../../dom";
 import type { JointDetails } from "../../protocol";
 import type { DescriptionModel } from "../../state/description-model";
 import { formatJointCells, COLUMNS, sortJoints, type Column } from "../../state/joint-table";
@@ -14,21 +14,21 @@ export class JointTablePanel implements Panel {
   readonly id = "joint-table";
   readonly icon = "table";
   readonly element: HTMLElement;
-  private readonly head = h("tr", {});
+  private readonly headRow = h("tr", {});
   private readonly body = h("tbody", {});
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
-  private readonly box: HTMLElement;
+  private readonly tableBox: HTMLElement;
   private readonly count = h("span", { class: "toolbar-label" });
   private readonly rows = new Map<string, HTMLElement>();
-  private order: { column: Column; isDescending: boolean } | null = null;
+  private sorting: { column: Column; isDescending: boolean } | null = null;
   private model: DescriptionModel | undefined;
 
   constructor(private readonly session: Session) {
-    const table = h("table", { class: "joint-table" }, h("thead", {}, this.head), this.body);
-    this.box = h("div", { class: "table-box" }, table);
+    const table = h("table", { class: "joint-table" }, h("thead", {}, this.headRow), this.body);
+    this.tableBox = h("div", { class: "table-box" }, table);
     const units = new UnitSwitch(session.angleUnits);
     const bar = h("div", { class: "toolbar" }, this.count, h("span", { class: "spacer" }), units.element);
-    this.element = h("div", { class: "panel" }, bar, this.empty, this.box);
+    this.element = h("div", { class: "panel" }, bar, this.empty, this.tableBox);
     const { description, focus, angleUnits } = session;
     const update = coalesce(() => this.update());
     holdWhileVisible(this.element, () => description.hold(), update);
@@ -43,23 +43,23 @@ export class JointTablePanel implements Panel {
     this.model = getCurrentModel(this.session);
     const joints = this.model?.description.joints ?? [];
     this.empty.hidden = this.model !== undefined;
-    this.box.hidden = this.model === undefined;
+    this.tableBox.hidden = this.model === undefined;
     this.count.textContent = this.model ? strings.description.count(this.model.links.size, joints.length) : "";
-    this.head.replaceChildren(...COLUMNS.map((column) => this.createHeading(column)));
+    this.headRow.replaceChildren(...COLUMNS.map((column) => this.createHeading(column)));
     this.rows.clear();
-    const { order } = this;
-    const sortedJoints = order ? sortJoints(joints, order.column, order.isDescending) : joints;
+    const { sorting } = this;
+    const sortedJoints = sorting ? sortJoints(joints, sorting.column, sorting.isDescending) : joints;
     this.body.replaceChildren(...sortedJoints.map((joint) => this.createRow(joint)));
     this.markCurrent(false);
   }
 
   private createHeading(column: Column): HTMLElement {
     const texts = strings.description.table;
-    const isSorted = this.order?.column === column;
-    const sign = isSorted ? (this.order?.isDescending ? " ▾" : " ▴") : "";
-    const cell = h("th", {}, button(texts.hints[column], () => this.sortBy(column), "", texts[column] + sign));
+    const isSorted = this.sorting?.column === column;
+    const sign = isSorted ? (this.sorting?.isDescending ? " ▾" : " ▴") : "";
+    const cell = h("th", {}, createButton(texts.hints[column], () => this.sortBy(column), "", texts[column] + sign));
     cell.scope = "col";
-    cell.setAttribute("aria-sort", isSorted ? (this.order?.isDescending ? "descending" : "ascending") : "none");
+    cell.setAttribute("aria-sort", isSorted ? (this.sorting?.isDescending ? "descending" : "ascending") : "none");
     return cell;
   }
 
@@ -87,8 +87,8 @@ export class JointTablePanel implements Panel {
 
   /** Cycles through ascending order, descending order, and the order of the file. */
   private sortBy(column: Column): void {
-    if (this.order?.column !== column) this.order = { column, isDescending: false };
-    else this.order = this.order.isDescending ? null : { column, isDescending: true };
+    if (this.sorting?.column !== column) this.sorting = { column, isDescending: false };
+    else this.sorting = this.sorting.isDescending ? null : { column, isDescending: true };
     this.update();
   }
 

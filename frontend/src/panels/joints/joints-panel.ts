@@ -8,7 +8,7 @@ import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
 
 /** The minimum number of joints for which the filter is shown. */
-const MIN_FILTERED = 10;
+const MIN_JOINTS_FOR_FILTER = 10;
 
 /** The sliders of joint_state_publisher_gui, with named poses and a sweep. */
 export class JointsPanel implements Panel {
@@ -44,7 +44,7 @@ export class JointsPanel implements Panel {
     const isEmpty = this.rows.length === 0;
     if (isEmpty) this.list.append(h("p", { class: "empty" }, strings.joints.none));
     this.bars.hidden = isEmpty;
-    this.filter.hidden = this.rows.length < MIN_FILTERED;
+    this.filter.hidden = this.rows.length < MIN_JOINTS_FOR_FILTER;
     if (this.filter.hidden) this.filter.value = "";
     this.applyFilter();
     this.update();

@@ -1,6 +1,6 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
-import { readSrdf, toSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
+import { parseSrdf, formatSrdf, matchesPose, type NamedPose } from "../../state/named-poses";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { openMenu } from "../../widgets/menu";
@@ -27,18 +27,18 @@ export class PoseBar {
     this.fileInput.accept = ".srdf,.xml,.xacro";
     this.fileInput.hidden = true;
     this.fileInput.addEventListener("change", () => void this.importFile());
-    const moreButton = button(texts.more, () => this.openMoreMenu(moreButton), "tool bare", icon("more"));
+    const moreButton = createButton(texts.more, () => this.openMoreMenu(moreButton), "tool bare", createIcon("more"));
     moreButton.setAttribute("aria-haspopup", "menu");
-    const entry = h(
+    const nameRow = h(
       "div",
       { class: "bar-row" },
       h("span", { class: "bar-label", title: texts.kept }, texts.label),
       this.nameField,
-      button(texts.saveHint, () => this.save(), "tool", texts.save),
+      createButton(texts.saveHint, () => this.save(), "tool", texts.save),
       moreButton,
     );
     this.notice.hidden = true;
-    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, entry, this.chipBox, this.notice, this.fileInput);
+    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: texts.label } }, nameRow, this.chipBox, this.notice, this.fileInput);
     const { poses, joints, robotChanged } = session;
     poses.changed.on(() => this.show());
     robotChanged.on(() => this.show());
@@ -60,8 +60,8 @@ export class PoseBar {
     return h(
       "span",
       { class: "chip", data: { pose: pose.name } },
-      button(texts.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
-      button(texts.remove(pose.name), () => this.session.poses.remove(this.robotName, pose.name), "chip-remove", icon("close")),
+      createButton(texts.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
+      createButton(texts.remove(pose.name), () => this.session.poses.remove(this.robotName, pose.name), "chip-remove", createIcon("close")),
     );
   }
 
@@ -98,13 +98,13 @@ export class PoseBar {
   }
 
   private export(): void {
-    saveText(`${this.robotName || "robot"}.srdf`, toSrdf(this.robotName, this.session.poses.posesOf(this.robotName)), "application/xml");
+    saveText(`${this.robotName || "robot"}.srdf`, formatSrdf(this.robotName, this.session.poses.posesOf(this.robotName)), "application/xml");
   }
 
   private async importFile(): Promise<void> {
     const file = this.fileInput.files?.[0];
     if (!file) return;
-    const poses = readSrdf(await file.text());
+    const poses = parseSrdf(await file.text());
     this.fileInput.value = "";
     this.notice.hidden = poses.length > 0;
     this.notice.textContent = strings.description.poses.nothingFound;

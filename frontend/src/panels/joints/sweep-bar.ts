@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { JointsState } from "../../state/joints";
 import { Sweep, type SweepOrder } from "../../state/sweep";
 import { strings } from "../../strings";
@@ -15,8 +15,8 @@ export class SweepBar {
   private readonly speedSelect = h("select", { class: "choice" });
   private readonly startButton: HTMLButtonElement;
   private sweep: Sweep | null = null;
-  private seconds = 0;
-  private lastMs = 0;
+  private sweepSeconds = 0;
+  private lastTickMs = 0;
   private sentPositions: Readonly<Record<string, number>> = {};
 
   constructor(private readonly joints: JointsState) {
@@ -28,7 +28,7 @@ export class SweepBar {
     fillSelect(this.speedSelect, texts.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
     this.speedSelect.value = "1";
     this.orderSelect.addEventListener("change", () => this.sweep && this.startSweep());
-    this.startButton = button(texts.start, () => (this.sweep ? this.end() : this.startSweep()), "tool bare", icon("play"));
+    this.startButton = createButton(texts.start, () => (this.sweep ? this.stopSweep() : this.startSweep()), "tool bare", createIcon("play"));
     const row = h(
       "div",
       { class: "bar-row" },
@@ -38,19 +38,19 @@ export class SweepBar {
       h("span", { class: "bar-buttons" }, createDragSwitch(joints), this.startButton),
     );
     this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: texts.label } }, row);
-    joints.controlsChanged.on(() => this.end());
+    joints.controlsChanged.on(() => this.stopSweep());
   }
 
   private startSweep(): void {
     this.sweep = new Sweep(this.joints.controls ?? [], this.joints.positions, this.orderSelect.value as SweepOrder);
-    this.seconds = 0;
+    this.sweepSeconds = 0;
     this.sentPositions = this.joints.positions;
-    this.lastMs = performance.now();
+    this.lastTickMs = performance.now();
     this.showState();
     requestAnimationFrame(this.tick);
   }
 
-  private end(): void {
+  private stopSweep(): void {
     this.sweep = null;
     this.showState();
   }
@@ -58,9 +58,9 @@ export class SweepBar {
   private readonly tick = (): void => {
     if (!this.sweep) return;
     const now = performance.now();
-    this.seconds += Math.min((now - this.lastMs) / 1000, MAX_STEP_S) * Number(this.speedSelect.value);
-    this.lastMs = now;
-    const positions = this.sweep.positionsAt(this.seconds);
+    this.sweepSeconds += Math.min((now - this.lastTickMs) / 1000, MAX_STEP_S) * Number(this.speedSelect.value);
+    this.lastTickMs = now;
+    const positions = this.sweep.positionsAt(this.sweepSeconds);
     const movedJoints = Object.entries(positions).filter(([name, position]) => this.sentPositions[name] !== position);
     this.sentPositions = positions;
     this.joints.move(Object.fromEntries(movedJoints));
@@ -70,7 +70,7 @@ export class SweepBar {
   private showState(): void {
     const texts = strings.description.sweep;
     const isRunning = this.sweep !== null;
-    this.startButton.replaceChildren(icon(isRunning ? "stop" : "play"));
+    this.startButton.replaceChildren(createIcon(isRunning ? "stop" : "play"));
     this.startButton.title = isRunning ? texts.stop : texts.start;
     this.startButton.setAttribute("aria-label", this.startButton.title);
     this.startButton.classList.toggle("on", isRunning);
@@ -83,7 +83,7 @@ function createDragSwitch(joints: JointsState): HTMLElement {
     joints.dragsWithoutAlt = !joints.dragsWithoutAlt;
     show();
   };
-  const element = button(strings.description.handsOn, toggle, "tool bare", icon("hand"));
+  const element = createButton(strings.description.handsOn, toggle, "tool bare", createIcon("hand"));
   const show = (): void => {
     element.classList.toggle("on", joints.dragsWithoutAlt);
     element.setAttribute("aria-pressed", String(joints.dragsWithoutAlt));

@@ -9,10 +9,10 @@ export function askToCatchUp(state: CourseState, { new: newFiles, replaced: repl
   const texts = strings.learning;
   const folder = state.course?.folder ?? "";
   const createList = (paths: readonly string[]): HTMLElement => h("ul", { class: "catch-up-files", tabIndex: 0 }, ...paths.map((path) => h("li", {}, path.slice(folder.length + 1))));
-  const createPart = (text: string, paths: readonly string[]): HTMLElement[] => (paths.length > 0 ? [h("p", {}, text), createList(paths)] : []);
+  const createSection = (text: string, paths: readonly string[]): HTMLElement[] => (paths.length > 0 ? [h("p", {}, text), createList(paths)] : []);
   new Dialog(
     texts.catchUpTitle,
-    [h("p", {}, texts.catchUpText), ...createPart(texts.catchUpReplaced(replacedFiles.length), replacedFiles), ...createPart(texts.catchUpNew(newFiles.length), newFiles)],
-    [{ label: strings.shell.cancel }, { label: texts.catchUpTake, run: () => (state.catchUp(), undefined), isMain: true }],
+    [h("p", {}, texts.catchUpText), ...createSection(texts.catchUpReplaced(replacedFiles.length), replacedFiles), ...createSection(texts.catchUpNew(newFiles.length), newFiles)],
+    [{ label: strings.shell.cancel }, { label: texts.catchUpTake, run: () => (state.catchUp(), undefined), isPrimary: true }],
   ).open();
 }

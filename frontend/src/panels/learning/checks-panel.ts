@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { StepCheck } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { languageTag, strings } from "../../strings";
@@ -17,20 +17,20 @@ export class ChecksPanel implements Panel {
   private readonly status = h("span", { class: "checks-status", role: "status" });
   private readonly list = h("ul", { class: "checks-list" });
   private readonly offerText = h("span");
-  private readonly offerBox: HTMLElement;
+  private readonly catchUpOffer: HTMLElement;
   private readonly nextButton: HTMLButtonElement;
   private readonly content: HTMLElement;
 
   constructor(private readonly state: CourseState) {
     const texts = strings.learning;
-    const checkButton = button(`${texts.checkHint} (${formatShortcut(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
-    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed primary", texts.nextStep);
-    this.offerBox = h("div", { class: "checks-offer" }, this.offerText, button(texts.catchUpHint, () => state.requestCatchUp(), "tool framed", texts.catchUp));
+    const checkButton = createButton(`${texts.checkHint} (${formatShortcut(SHORTCUTS.checkStep)})`, () => state.check(), "tool framed", texts.check);
+    this.nextButton = createButton(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.moveBy(1), "tool framed primary", texts.nextStep);
+    this.catchUpOffer = h("div", { class: "checks-offer" }, this.offerText, createButton(texts.catchUpHint, () => state.requestCatchUp(), "tool framed", texts.catchUp));
     this.content = h(
       "div",
       { class: "checks" },
       h("header", { class: "checks-head" }, this.status, h("span", { class: "spacer" }), checkButton, this.nextButton),
-      this.offerBox,
+      this.catchUpOffer,
       h("div", { class: "scroll", role: "group", tabIndex: 0, aria: { label: texts.checks } }, this.list),
     );
     this.element = h("div", { class: "panel checks-panel" }, this.empty, this.content);
@@ -47,7 +47,7 @@ export class ChecksPanel implements Panel {
     this.status.textContent = this.formatStatus();
     this.element.classList.toggle("running", results?.is_running === true);
     this.element.classList.toggle("passed", state.isPassed);
-    this.offerBox.hidden = state.missingCount === 0;
+    this.catchUpOffer.hidden = state.missingCount === 0;
     this.offerText.textContent = strings.learning.missingSteps(state.missingCount);
     this.nextButton.hidden = !state.isPassed || state.stepAt(1) === undefined;
     this.list.replaceChildren(...(results?.checks ?? []).map((check) => createRow(check)));
@@ -65,8 +65,8 @@ export class ChecksPanel implements Panel {
 }
 
 function createRow({ title, is_passed: isPassed, message }: StepCheck): HTMLElement {
-  const mark = isPassed ? icon("check", "level-ok") : icon("close", "level-error");
-  const state = h("span", { class: "hidden-text" }, isPassed ? strings.learning.passed : strings.learning.missing);
+  const statusIcon = isPassed ? createIcon("check", "level-ok") : createIcon("close", "level-error");
+  const stateText = h("span", { class: "hidden-text" }, isPassed ? strings.learning.passed : strings.learning.missing);
   const text = message === null ? null : h("p", { class: "check-message" }, localize(message));
-  return h("li", { class: "step-check" }, mark, h("div", {}, state, localize(title), text));
+  return h("li", { class: "step-check" }, statusIcon, h("div", {}, stateText, localize(title), text));
 }

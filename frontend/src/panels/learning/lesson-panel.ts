@@ -1,10 +1,10 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 import { formatShortcut, SHORTCUTS } from "../../widgets/shortcuts";
-import { nameOf } from "../place";
+import { fileNameOf } from "../place";
 import type { Panel } from "../panel";
 import { createLessonText } from "./lesson-text";
 import { localize } from "./local-text";
@@ -16,8 +16,8 @@ export class LessonPanel implements Panel {
   readonly icon = "lesson";
   readonly element: HTMLElement;
   private readonly empty = h("p", { class: "empty" }, strings.learning.off);
-  private readonly place = h("span", { class: "lesson-place" });
-  private readonly text = h("div", { class: "lesson-body scroll", tabIndex: 0 });
+  private readonly lessonPlace = h("span", { class: "lesson-place" });
+  private readonly textBox = h("div", { class: "lesson-body scroll", tabIndex: 0 });
   private readonly problem = h("div", { class: "lesson-problem", role: "alert" });
   private readonly answerField = h("input", { class: "field lesson-answer" });
   private readonly outline: Outline;
@@ -26,7 +26,7 @@ export class LessonPanel implements Panel {
   private readonly nextButton: HTMLButtonElement;
   private readonly hintButton: HTMLButtonElement;
   private readonly solutionButton: HTMLButtonElement;
-  private readonly course: HTMLElement;
+  private readonly courseView: HTMLElement;
   /** Identifies the drawn text, so that a new result does not draw it again and scroll it. */
   private shownKey = "";
   private isOutlineShown = false;
@@ -34,26 +34,26 @@ export class LessonPanel implements Panel {
   constructor(private readonly state: CourseState) {
     const texts = strings.learning;
     this.outline = new Outline(state, () => this.showOutline(false));
-    this.outlineToggle = button(texts.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", icon("tree"), texts.outline);
-    this.backButton = button(`${texts.backHint} (${formatShortcut(SHORTCUTS.previousStep)})`, () => state.move(-1), "tool framed", texts.back);
-    this.nextButton = button(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.move(1), "tool framed", texts.next);
-    this.hintButton = button(texts.hintHint, () => state.takeHint(), "tool framed", icon("bulb"), texts.hint);
-    this.solutionButton = button(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
+    this.outlineToggle = createButton(texts.outlineHint, () => this.showOutline(!this.isOutlineShown), "tool framed", createIcon("tree"), texts.outline);
+    this.backButton = createButton(`${texts.backHint} (${formatShortcut(SHORTCUTS.previousStep)})`, () => state.moveBy(-1), "tool framed", texts.back);
+    this.nextButton = createButton(`${texts.nextHint} (${formatShortcut(SHORTCUTS.nextStep)})`, () => state.moveBy(1), "tool framed", texts.next);
+    this.hintButton = createButton(texts.hintHint, () => state.takeHint(), "tool framed", createIcon("bulb"), texts.hint);
+    this.solutionButton = createButton(texts.solutionHint, () => this.askForSolution(), "tool framed", texts.solution);
     this.answerField.setAttribute("aria-label", texts.answer);
     this.answerField.addEventListener("keydown", (event) => {
       event.stopPropagation();
       if (event.key === "Enter" && !event.isComposing) this.sendAnswer();
     });
-    this.course = h(
+    this.courseView = h(
       "div",
       { class: "lesson" },
-      h("header", { class: "lesson-head" }, this.outlineToggle, this.place),
+      h("header", { class: "lesson-head" }, this.outlineToggle, this.lessonPlace),
       this.outline.element,
-      this.text,
+      this.textBox,
       this.problem,
       h("footer", { class: "lesson-foot" }, this.backButton, this.hintButton, this.solutionButton, h("span", { class: "spacer" }), this.nextButton),
     );
-    this.element = h("div", { class: "panel lesson-panel" }, this.empty, this.course);
+    this.element = h("div", { class: "panel lesson-panel" }, this.empty, this.courseView);
     this.showOutline(false);
     state.changed.on(coalesce(() => this.update()));
     this.update();
@@ -68,11 +68,11 @@ export class LessonPanel implements Panel {
     const { state } = this;
     const { step } = state;
     this.empty.hidden = step !== null;
-    this.course.hidden = step === null;
+    this.courseView.hidden = step === null;
     if (step === null) return;
     const texts = strings.learning;
     const passedCount = state.steps.filter(({ is_passed: isPassed }) => isPassed).length;
-    this.place.replaceChildren(`${localize(step.lesson)} · `, h("span", {}, texts.progress(passedCount, state.steps.length)));
+    this.lessonPlace.replaceChildren(`${localize(step.lesson)} · `, h("span", {}, texts.progress(passedCount, state.steps.length)));
     this.backButton.disabled = state.stepAt(-1) === undefined;
     this.nextButton.disabled = state.stepAt(1) === undefined;
     this.nextButton.classList.toggle("primary", state.isPassed);
@@ -91,11 +91,11 @@ export class LessonPanel implements Panel {
     if (step === null) return;
     const key = `${step.address} ${step.hints.length} ${step.right_answer ?? ""}`;
     if (key === this.shownKey) return;
-    const isSame = this.shownKey.startsWith(`${step.address} `);
+    const isSameStep = this.shownKey.startsWith(`${step.address} `);
     this.shownKey = key;
     const hints = step.hints.map((hint) => createLessonText(localize(hint), "lesson-text lesson-hint"));
     const rightAnswer = step.right_answer === null ? [] : [h("p", { class: "lesson-text lesson-hint" }, strings.learning.rightAnswer(appendUnit(step.right_answer, step.unit)))];
-    this.text.replaceChildren(
+    this.textBox.replaceChildren(
       h("h2", {}, localize(step.title)),
       ...(localize(step.introduction) === "" ? [] : [createLessonText(localize(step.introduction), "lesson-text lesson-introduction")]),
       createLessonText(localize(step.body), "lesson-text"),
@@ -104,14 +104,14 @@ export class LessonPanel implements Panel {
       ...hints,
       ...rightAnswer,
     );
-    if (isSame) [...hints, ...rightAnswer].at(-1)?.scrollIntoView({ block: "nearest" });
-    else this.text.scrollTop = 0;
+    if (isSameStep) [...hints, ...rightAnswer].at(-1)?.scrollIntoView({ block: "nearest" });
+    else this.textBox.scrollTop = 0;
   }
 
   private createFileRow(files: readonly string[]): HTMLElement[] {
     if (files.length === 0) return [];
     const texts = strings.learning;
-    const buttons = files.map((path) => button(texts.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", icon("file"), nameOf(path)));
+    const buttons = files.map((path) => createButton(texts.openFile(path), () => this.state.fileRequested.emit(path), "tool framed", createIcon("file"), fileNameOf(path)));
     return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.files), ...buttons)];
   }
 
@@ -119,7 +119,7 @@ export class LessonPanel implements Panel {
     if (unit === null) return [];
     const texts = strings.learning;
     this.answerField.value = answer ?? "";
-    const sendButton = button(texts.answerHint, () => this.sendAnswer(), "tool framed primary", texts.sendAnswer);
+    const sendButton = createButton(texts.answerHint, () => this.sendAnswer(), "tool framed primary", texts.sendAnswer);
     return [h("div", { class: "lesson-row" }, h("span", { class: "toolbar-label" }, texts.answer), this.answerField, unit === "1" ? null : h("span", {}, unit), sendButton)];
   }
 
@@ -130,7 +130,7 @@ export class LessonPanel implements Panel {
   private showOutline(isShown: boolean): void {
     this.isOutlineShown = isShown;
     this.outline.element.hidden = !isShown;
-    this.text.hidden = isShown;
+    this.textBox.hidden = isShown;
     this.outlineToggle.setAttribute("aria-expanded", String(isShown));
     if (isShown) this.outline.draw();
   }
@@ -143,7 +143,7 @@ export class LessonPanel implements Panel {
     const answerNote = (this.state.step?.unit ?? null) === null ? [] : [h("p", {}, texts.solutionNumber)];
     new Dialog(texts.solutionTitle, [...(files.length > 0 ? copiedFiles : []), ...answerNote], [
       { label: strings.shell.cancel },
-      { label: texts.solutionTake, run: () => (this.state.takeSolution(), undefined), isMain: true },
+      { label: texts.solutionTake, run: () => (this.state.takeSolution(), undefined), isPrimary: true },
     ]).open();
   }
 }

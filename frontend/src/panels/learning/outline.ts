@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { CourseStepItem } from "../../protocol";
 import type { CourseState } from "../../state/course";
 import { strings } from "../../strings";
@@ -9,10 +9,10 @@ import { localize } from "./local-text";
 export class Outline {
   readonly element = h("nav", { class: "course-outline", aria: { label: strings.learning.outline } });
 
-  /** @param onChosen - called when the learner has opened a step. */
+  /** @param onStepOpened - called when the learner has opened a step. */
   constructor(
     private readonly state: CourseState,
-    private readonly onChosen: () => void,
+    private readonly onStepOpened: () => void,
   ) {}
 
   draw(): void {
@@ -32,12 +32,12 @@ export class Outline {
   private createRow({ address, is_passed: isPassed, is_taken_over: isTakenOver }: CourseStepItem, name: string): HTMLElement {
     const open = (): void => {
       this.state.open(address);
-      this.onChosen();
+      this.onStepOpened();
     };
     const texts = strings.learning;
-    const mark = isPassed ? icon("check", "level-ok") : isTakenOver ? icon("download") : h("span", { class: "outline-mark" });
+    const statusIcon = isPassed ? createIcon("check", "level-ok") : isTakenOver ? createIcon("download") : h("span", { class: "outline-mark" });
     const title = isPassed ? texts.passedStep(name) : isTakenOver ? texts.takenOverStep(name) : name;
-    const row = button(title, open, "outline-step", mark, name);
+    const row = createButton(title, open, "outline-step", statusIcon, name);
     if (address === this.state.step?.address) row.setAttribute("aria-current", "step");
     return row;
   }

@@ -1,12 +1,12 @@
 import type { PropertyValue, WorldEntity } from "../../protocol";
 import type { AngleUnits } from "../../state/angle-unit";
 import type { Modeling } from "../../state/modeling/modeling";
-import { MIN_SIZE, resizeChange, roundNoise, type Change } from "../../state/modeling/shapes";
+import { MIN_SIZE_M, createResizeChange, roundNoise, type Change } from "../../state/modeling/shapes";
 import { strings } from "../../strings";
 import type { TreeItem } from "../../tree/tree-item";
 
 /** The index of roll, followed by pitch and yaw, in a pose. */
-const ROLL = 3;
+const ROLL_INDEX = 3;
 
 /**
  * Returns the property rows of the selection. A value that differs among the entities is shown empty; an edit applies
@@ -14,25 +14,25 @@ const ROLL = 3;
  */
 export function createEntityItems(modeling: Modeling, angles: AngleUnits): TreeItem[] {
   const entities = modeling.selectedEntities;
-  const [first] = entities;
-  if (!first) return [];
+  const [firstEntity] = entities;
+  if (!firstEntity) return [];
   const texts = strings.modeling;
   const edit = (change: (entity: WorldEntity) => Change): void => modeling.change(entities.map(change));
   const areModels = entities.every(({ kind }) => kind === "model");
-  const haveSameShape = areModels && first.shape !== null && entities.every(({ shape }) => shape === first.shape);
+  const haveSameShape = areModels && firstEntity.shape !== null && entities.every(({ shape }) => shape === firstEntity.shape);
   return [
-    entities.length === 1 ? createNameItem(first, modeling) : createNote("count", texts.selectedCount(entities.length)),
+    entities.length === 1 ? createNameItem(firstEntity, modeling) : createNote("count", texts.selectedCount(entities.length)),
     createGroup("position", texts.position, createPoseItems(entities, 0, ["X", "Y", "Z"], 1, edit)),
-    createGroup("rotation", `${texts.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, createPoseItems(entities, ROLL, ["Roll", "Pitch", "Yaw"], angles.scale("revolute"), edit)),
+    createGroup("rotation", `${texts.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, createPoseItems(entities, ROLL_INDEX, ["Roll", "Pitch", "Yaw"], angles.scaleOf("revolute"), edit)),
     ...(haveSameShape ? [createGroup("size", texts.size, createSizeItems(entities, edit))] : []),
     ...(areModels ? [createStaticItem(entities, edit)] : []),
-    ...(entities.every(({ color }) => color !== null) ? [createColorItem(first, edit)] : []),
-    ...(entities.length === 1 && first.address !== null ? [createNote("address", texts.address, first.address)] : []),
-    ...(entities.length === 1 && first.parts.length > 0 ? [createNote("parts", texts.parts, first.parts.join(", "))] : []),
+    ...(entities.every(({ color }) => color !== null) ? [createColorItem(firstEntity, edit)] : []),
+    ...(entities.length === 1 && firstEntity.address !== null ? [createNote("address", texts.address, firstEntity.address)] : []),
+    ...(entities.length === 1 && firstEntity.parts.length > 0 ? [createNote("parts", texts.parts, firstEntity.parts.join(", "))] : []),
   ];
 }
 
-type Edit = (change: (entity: WorldEntity) => Change) => void;
+type EditEntities = (change: (entity: WorldEntity) => Change) => void;
 
 function createNameItem({ name }: WorldEntity, modeling: Modeling): TreeItem {
   const set = (value: PropertyValue): void => {
@@ -42,7 +42,7 @@ function createNameItem({ name }: WorldEntity, modeling: Modeling): TreeItem {
   return { key: "name", name: strings.modeling.name, kind: "string", value: name, description: "", set };
 }
 
-function createPoseItems(entities: readonly WorldEntity[], firstIndex: number, names: readonly string[], scale: number, edit: Edit): TreeItem[] {
+function createPoseItems(entities: readonly WorldEntity[], firstIndex: number, names: readonly string[], scale: number, edit: EditEntities): TreeItem[] {
   return names.map((name, i) => {
     const values = entities.map(({ pose }) => (pose[firstIndex + i] ?? 0) * scale);
     const set = (value: PropertyValue): void => {
@@ -52,24 +52,24 @@ function createPoseItems(entities: readonly WorldEntity[], firstIndex: number, n
   });
 }
 
-function createSizeItems(entities: readonly WorldEntity[], edit: Edit): TreeItem[] {
-  const [first] = entities;
-  const names = first?.shape ? strings.modeling.lengths[first.shape] : [];
+function createSizeItems(entities: readonly WorldEntity[], edit: EditEntities): TreeItem[] {
+  const [firstEntity] = entities;
+  const names = firstEntity?.shape ? strings.modeling.lengths[firstEntity.shape] : [];
   return names.map((name, i) => {
     const set = (value: PropertyValue): void => {
-      if (typeof value === "number") edit((entity) => resizeChange(entity, entity.size.with(i, value)));
+      if (typeof value === "number") edit((entity) => createResizeChange(entity, entity.size.with(i, value)));
     };
-    return { key: `size/${i}`, name, kind: "float", value: findCommonValue(entities.map(({ size }) => size[i] ?? 0)), description: "", minimum: MIN_SIZE, set };
+    return { key: `size/${i}`, name, kind: "float", value: findCommonValue(entities.map(({ size }) => size[i] ?? 0)), description: "", minimum: MIN_SIZE_M, set };
   });
 }
 
-function createStaticItem(entities: readonly WorldEntity[], edit: Edit): TreeItem {
+function createStaticItem(entities: readonly WorldEntity[], edit: EditEntities): TreeItem {
   const { static: name, staticHint: description } = strings.modeling;
   const isStatic = entities.every((entity) => entity.static);
   return { key: "static", name, kind: "bool", value: isStatic, description, set: (value) => edit((entity) => ({ name: entity.name, static: value === true })) };
 }
 
-function createColorItem({ color }: WorldEntity, edit: Edit): TreeItem {
+function createColorItem({ color }: WorldEntity, edit: EditEntities): TreeItem {
   const set = (value: PropertyValue): void => {
     const rgb = parseChannels(String(value));
     edit((entity) => ({ name: entity.name, color: [...rgb, entity.color?.[3] ?? 1] }));
@@ -97,6 +97,6 @@ function createNote(key: string, name: string, value = ""): TreeItem {
 
 /** Returns the value that all entities share; null if they differ. */
 function findCommonValue(values: readonly number[]): number | null {
-  const [first = null] = values;
-  return values.every((value) => value === first) ? first : null;
+  const [firstEntity = null] = values;
+  return values.every((value) => value === firstEntity) ? firstEntity : null;
 }

@@ -1,13 +1,13 @@
 import { h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createIcon, type IconName } from "../../icons";
 import type { WorldEntity } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
 import type { Shape } from "../../state/modeling/shapes";
 import { strings } from "../../strings";
 import { VirtualRows } from "../../widgets/virtual-rows";
 
-const ROW_HEIGHT = 23;
-const ICONS: Readonly<Record<Shape, IconName>> = {
+const ROW_HEIGHT_PX = 23;
+const SHAPE_ICONS: Readonly<Record<Shape, IconName>> = {
   box: "shapeBox",
   cylinder: "shapeCylinder",
   sphere: "shapeSphere",
@@ -25,7 +25,7 @@ export class EntityList {
   private anchorRow = 0;
 
   constructor(private readonly modeling: Modeling) {
-    this.rows = new VirtualRows("entity-list", ROW_HEIGHT, (index) => this.createRow(index));
+    this.rows = new VirtualRows("entity-list", ROW_HEIGHT_PX, (index) => this.createRow(index));
     this.element = this.rows.element;
     this.element.setAttribute("role", "listbox");
     this.element.setAttribute("aria-multiselectable", "true");
@@ -61,7 +61,7 @@ export class EntityList {
     const row = h(
       "div",
       { class: isSelected ? "entity-row selected" : "entity-row", role: "option", title: name, aria: { selected: String(isSelected) } },
-      icon(entity ? iconOf(entity) : "unknown"),
+      createIcon(entity ? chooseIcon(entity) : "unknown"),
       h("span", {}, name),
     );
     row.id = `entity-${index}`;
@@ -94,17 +94,17 @@ export class EntityList {
 
   private onKeyDown(event: KeyboardEvent): void {
     const lastIndex = this.entities.length - 1;
-    const target = { ArrowDown: this.currentRow + 1, ArrowUp: this.currentRow - 1, Home: 0, End: lastIndex }[event.key];
-    if (target === undefined || lastIndex < 0) return;
+    const targetIndex = { ArrowDown: this.currentRow + 1, ArrowUp: this.currentRow - 1, Home: 0, End: lastIndex }[event.key];
+    if (targetIndex === undefined || lastIndex < 0) return;
     event.preventDefault();
-    const index = Math.max(0, Math.min(lastIndex, target));
+    const index = Math.max(0, Math.min(lastIndex, targetIndex));
     this.selectRow(index, event.shiftKey, false);
     this.rows.reveal(index);
   }
 }
 
-function iconOf({ kind, shape, parts, address }: WorldEntity): IconName {
+function chooseIcon({ kind, shape, parts, address }: WorldEntity): IconName {
   if (kind === "light") return "bulb";
-  if (shape) return ICONS[shape];
+  if (shape) return SHAPE_ICONS[shape];
   return parts.length > 0 ? "group" : address === null ? "cube" : "library";
 }

@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { ModelChoice } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
 import { strings } from "../../strings";
@@ -23,8 +23,8 @@ export class ModelDialog {
     for (const element of [this.search, this.list]) element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.dialog = new Dialog(
       texts.models,
-      [h("div", { class: "search-box" }, icon("search"), this.search), this.list],
-      [{ label: strings.shell.cancel }, { label: texts.choose, isMain: true, run: () => this.accept() }],
+      [h("div", { class: "search-box" }, createIcon("search"), this.search), this.list],
+      [{ label: strings.shell.cancel }, { label: texts.choose, isPrimary: true, run: () => this.placeChosenModel() }],
       "add-dialog",
     );
     const unsubscribe = modeling.modelsArrived.on((models) => {
@@ -48,20 +48,20 @@ export class ModelDialog {
     if (this.models && this.listedModels.length === 0) {
       this.list.append(h("p", { class: "empty" }, this.models.length === 0 ? texts.noModels : texts.notFound));
     }
-    this.choose(this.listedModels.find(({ address }) => address === this.chosenModel?.address) ?? this.listedModels[0] ?? null);
+    this.chooseModel(this.listedModels.find(({ address }) => address === this.chosenModel?.address) ?? this.listedModels[0] ?? null);
   }
 
   private createRow(model: ModelChoice): HTMLElement {
     const { name, address } = model;
-    const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
-    const row = h("div", { class: "choice-row", role: "option", tabIndex: -1, onClick: () => this.choose(model) }, ...parts);
+    const parts = [createIcon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
+    const row = h("div", { class: "choice-row", role: "option", tabIndex: -1, onClick: () => this.chooseModel(model) }, ...parts);
     row.addEventListener("dblclick", () => {
-      if (this.accept()) this.dialog.close();
+      if (this.placeChosenModel()) this.dialog.close();
     });
     return row;
   }
 
-  private choose(model: ModelChoice | null): void {
+  private chooseModel(model: ModelChoice | null): void {
     this.chosenModel = model;
     this.dialog.isReady = model !== null;
     [...this.list.querySelectorAll<HTMLElement>("[role=option]")].forEach((row, index) => {
@@ -72,19 +72,19 @@ export class ModelDialog {
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    if (event.key === "Enter" && event.target !== this.search && this.accept()) this.dialog.close();
+    if (event.key === "Enter" && event.target !== this.search && this.placeChosenModel()) this.dialog.close();
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     const index = this.listedModels.findIndex((model) => model === this.chosenModel) + step;
     const nextModel = this.listedModels[index];
     if (step === 0 || !nextModel) return;
     event.preventDefault();
-    this.choose(nextModel);
+    this.chooseModel(nextModel);
     const row = this.list.querySelectorAll<HTMLElement>("[role=option]")[index];
     row?.scrollIntoView({ block: "nearest" });
     if (event.target !== this.search) row?.focus();
   }
 
-  private accept(): boolean {
+  private placeChosenModel(): boolean {
     if (!this.chosenModel) return false;
     this.modeling.startPlacing({ kind: "model", address: this.chosenModel.address });
     return true;

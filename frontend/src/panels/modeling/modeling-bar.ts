@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon, type IconName } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon, type IconName } from "../../icons";
 import type { GizmoMode, Modeling, Placing } from "../../state/modeling/modeling";
 import type { NewKind } from "../../state/modeling/shapes";
 import { strings } from "../../strings";
@@ -48,8 +48,8 @@ export class ModelingBar {
     this.undoButton = createTool(appendKeys(texts.undo, WORLD_KEYS.undo), "undo", () => modeling.undo());
     this.redoButton = createTool(appendKeys(texts.redo, WORLD_KEYS.redo), "redo", () => modeling.redo());
     this.saveButton = createTool(appendKeys(texts.save, WORLD_KEYS.save), "save", () => commands.save());
-    const createLine = (): HTMLElement => h("span", { class: "bar-line" });
-    const tools = [...this.addButtons.values(), createLine(), ...this.modeButtons.values(), this.snapButton, createLine(), this.undoButton, this.redoButton, this.saveButton];
+    const createSeparator = (): HTMLElement => h("span", { class: "bar-line" });
+    const tools = [...this.addButtons.values(), createSeparator(), ...this.modeButtons.values(), this.snapButton, createSeparator(), this.undoButton, this.redoButton, this.saveButton];
     this.element = h("div", { class: "simulation-tools modeling-tools", role: "toolbar", aria: { label: texts.label } }, ...tools);
     for (const signal of [modeling.changed, modeling.selectionChanged, modeling.toolChanged, modeling.snapping.changed]) {
       signal.on(() => this.show());
@@ -99,7 +99,7 @@ export class ModelingBar {
 }
 
 function createTool(label: string, name: IconName, run: () => void): HTMLButtonElement {
-  return button(label, run, "scene-tool small", icon(name));
+  return createButton(label, run, "scene-tool small", createIcon(name));
 }
 
 function setPressed(element: HTMLButtonElement, isPressed: boolean): void {

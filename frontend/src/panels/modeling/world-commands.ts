@@ -1,7 +1,7 @@
 import type { Modeling } from "../../state/modeling/modeling";
 import { strings } from "../../strings";
 import { askName } from "../../widgets/dialog";
-import { matches, type Shortcut } from "../../widgets/shortcuts";
+import { matchesShortcut, type Shortcut } from "../../widgets/shortcuts";
 
 /** The keys of modeling, as in Gazebo and Blender. */
 export const WORLD_KEYS = {
@@ -23,10 +23,10 @@ export const WORLD_KEYS = {
 } as const satisfies Readonly<Record<string, Shortcut>>;
 
 /** Elements in which keys enter text. */
-const TEXT = "input:not([type=checkbox]):not([type=range]), textarea, select, [contenteditable]";
-const OVERLAYS = "dialog, [role=menu]";
+const TEXT_SELECTOR = "input:not([type=checkbox]):not([type=range]), textarea, select, [contenteditable]";
+const OVERLAY_SELECTOR = "dialog, [role=menu]";
 /** Panels have keys of their own; the world's keys also work in the World panel. */
-const OTHER_PANELS = ".panel:not(.world-panel)";
+const OTHER_PANELS_SELECTOR = ".panel:not(.world-panel)";
 
 /** The commands for modeling the world, which keys and buttons run. */
 export class WorldCommands {
@@ -72,7 +72,7 @@ export class WorldCommands {
     document.addEventListener(
       "keydown",
       (event) => {
-        if (!this.modeling.isActive || !this.runKey(event)) return;
+        if (!this.modeling.isActive || !this.handleKey(event)) return;
         event.preventDefault();
         event.stopImmediatePropagation();
       },
@@ -80,12 +80,12 @@ export class WorldCommands {
     );
   }
 
-  private runKey(event: KeyboardEvent): boolean {
+  private handleKey(event: KeyboardEvent): boolean {
     const names = Object.keys(WORLD_KEYS) as (keyof typeof WORLD_KEYS)[];
-    const command = names.find((command) => matches(event, WORLD_KEYS[command]));
+    const command = names.find((command) => matchesShortcut(event, WORLD_KEYS[command]));
     const target = event.target instanceof Element ? event.target : null;
-    if (command === undefined || target?.closest(OVERLAYS) || target?.closest(OTHER_PANELS)) return false;
-    if (target?.closest(TEXT)) {
+    if (command === undefined || target?.closest(OVERLAY_SELECTOR) || target?.closest(OTHER_PANELS_SELECTOR)) return false;
+    if (target?.closest(TEXT_SELECTOR)) {
       if (command !== "save" && command !== "saveAs") return false;
       if (target instanceof HTMLElement) target.blur(); // applies the text being typed
     }

@@ -1,65 +1,65 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { LogLine } from "../../protocol";
 import { formatClock } from "../../state/monitor/figure-text";
 import { LEVELS, levelOf, formatLine, type LogState } from "../../state/monitor/log";
 import { strings } from "../../strings";
 import { createTextField } from "../../widgets/controls";
 import { copyText } from "../../widgets/copy-text";
-import { VirtualList } from "../../widgets/virtual-list";
+import { FollowingList } from "../../widgets/following-list";
 import type { Panel } from "../panel";
 
-const ROW_PX = 21;
+const ROW_HEIGHT_PX = 21;
 
 /** The records of /rosout, as rqt_console shows them. */
 export class LogPanel implements Panel {
   readonly id = "log";
   readonly icon = "log";
   readonly element: HTMLElement;
-  private readonly list: VirtualList<LogLine>;
-  private readonly node = h("select", { class: "choice", title: strings.monitor.log.node, aria: { label: strings.monitor.log.node } });
-  private readonly pause: HTMLButtonElement;
+  private readonly list: FollowingList<LogLine>;
+  private readonly nodeSelect = h("select", { class: "choice", title: strings.monitor.log.node, aria: { label: strings.monitor.log.node } });
+  private readonly pauseButton: HTMLButtonElement;
   private readonly newestButton: HTMLButtonElement;
-  private readonly count = h("span", { class: "note" });
+  private readonly countNote = h("span", { class: "note" });
   private readonly details = h("div", { class: "log-details" });
   private chosenLine: LogLine | null = null;
-  private nodes: string | null = null;
+  private shownNodesKey: string | null = null;
 
   constructor(private readonly state: LogState) {
     const texts = strings.monitor.log;
-    this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.createRow(line), () => this.showFollowing());
+    this.list = new FollowingList<LogLine>(ROW_HEIGHT_PX, (line) => this.createRow(line), () => this.updateNewestButton());
     this.list.element.setAttribute("role", "region");
     this.list.element.setAttribute("aria-label", texts.list);
     this.list.element.addEventListener("keydown", (event) => this.onKeyDown(event));
-    this.pause = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
-    this.newestButton = button(texts.newestHint, () => this.list.follow(), "tool", icon("follow"), texts.newest);
-    const copy = button(texts.copyHint, () => this.copy(copy), "tool", icon("copy"), texts.copy);
-    this.node.addEventListener("change", () => state.setNode(this.node.value));
+    this.pauseButton = createButton(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
+    this.newestButton = createButton(texts.newestHint, () => this.list.follow(), "tool", createIcon("follow"), texts.newest);
+    const copyButton = createButton(texts.copyHint, () => this.copy(copyButton), "tool", createIcon("copy"), texts.copy);
+    this.nodeSelect.addEventListener("change", () => state.setNode(this.nodeSelect.value));
     const filters = h(
       "div",
       { class: "toolbar" },
       this.createLevels(),
-      this.node,
+      this.nodeSelect,
       createTextField(strings.monitor.filter, (text) => state.setText(text)),
       h("span", { class: "spacer" }),
-      this.count,
+      this.countNote,
     );
-    const bar = h(
+    const toolbar = h(
       "div",
       { class: "toolbar" },
-      this.pause,
-      button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
-      copy,
+      this.pauseButton,
+      createButton(texts.clearHint, () => state.clear(), "tool", createIcon("clear"), strings.monitor.clear),
+      copyButton,
       h("span", { class: "spacer" }),
       this.newestButton,
     );
-    const head = h("div", { class: "log-row log-head" });
-    for (const text of [texts.level, texts.time, texts.node, texts.message, texts.location]) head.append(h("span", {}, text));
+    const header = h("div", { class: "log-row log-head" });
+    for (const text of [texts.level, texts.time, texts.node, texts.message, texts.location]) header.append(h("span", {}, text));
     this.details.hidden = true;
-    this.element = h("div", { class: "panel monitor log" }, bar, filters, head, this.list.element, this.details);
+    this.element = h("div", { class: "panel monitor log" }, toolbar, filters, header, this.list.element, this.details);
     state.changed.on(coalesce(() => this.show()));
     this.show();
-    this.showFollowing();
+    this.updateNewestButton();
   }
 
   onOpened(): void {
@@ -74,21 +74,21 @@ export class LogPanel implements Panel {
     const group = h("div", { class: "segmented", role: "group", aria: { label: strings.monitor.log.level } });
     for (const level of LEVELS) {
       const name = strings.monitor.log.levels[level];
-      const toggle = button(
+      const toggle = createButton(
         name,
         () => {
           this.state.setLevel(level, !this.state.levels.has(level));
-          mark();
+          updateToggle();
         },
         `log-level-${level}`,
         name,
       );
-      const mark = (): void => {
+      const updateToggle = (): void => {
         const isOn = this.state.levels.has(level);
         toggle.classList.toggle("on", isOn);
         toggle.setAttribute("aria-pressed", String(isOn));
       };
-      mark();
+      updateToggle();
       group.append(toggle);
     }
     return group;
@@ -99,18 +99,18 @@ export class LogPanel implements Panel {
     const { lines, shownLines, missedCount, isPaused } = this.state;
     this.list.show(shownLines);
     const countText = texts.shown(shownLines.length, lines.length);
-    this.count.textContent = missedCount > 0 ? `${countText}, ${texts.missed(missedCount)}` : countText;
-    this.pause.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? strings.monitor.resume : strings.monitor.pause);
-    this.pause.classList.toggle("on", isPaused);
+    this.countNote.textContent = missedCount > 0 ? `${countText}, ${texts.missed(missedCount)}` : countText;
+    this.pauseButton.replaceChildren(createIcon(isPaused ? "play" : "pause"), isPaused ? strings.monitor.resume : strings.monitor.pause);
+    this.pauseButton.classList.toggle("on", isPaused);
     const { nodes } = this.state;
-    if (nodes.join("\n") === this.nodes) return;
-    this.nodes = nodes.join("\n");
-    const chosenNode = this.node.value;
-    this.node.replaceChildren(new Option(texts.allNodes, ""), ...nodes.map((name) => new Option(name)));
-    this.node.value = nodes.includes(chosenNode) ? chosenNode : "";
+    if (nodes.join("\n") === this.shownNodesKey) return;
+    this.shownNodesKey = nodes.join("\n");
+    const chosenNode = this.nodeSelect.value;
+    this.nodeSelect.replaceChildren(new Option(texts.allNodes, ""), ...nodes.map((name) => new Option(name)));
+    this.nodeSelect.value = nodes.includes(chosenNode) ? chosenNode : "";
   }
 
-  private showFollowing(): void {
+  private updateNewestButton(): void {
     this.newestButton.classList.toggle("on", this.list.isFollowing);
     this.newestButton.setAttribute("aria-pressed", String(this.list.isFollowing));
   }
@@ -124,10 +124,10 @@ export class LogPanel implements Panel {
       h("span", { class: "note" }, formatClock(line.time)),
       h("span", {}, line.node),
       h("span", { class: "log-message" }, line.message),
-      h("span", { class: "note" }, placeOf(line)),
+      h("span", { class: "note" }, formatLocation(line)),
     );
     row.classList.toggle("chosen", line === this.chosenLine);
-    row.addEventListener("click", () => this.choose(line === this.chosenLine ? null : line));
+    row.addEventListener("click", () => this.chooseLine(line === this.chosenLine ? null : line));
     return row;
   }
 
@@ -135,9 +135,9 @@ export class LogPanel implements Panel {
   private onKeyDown(event: KeyboardEvent): void {
     const { shownLines } = this.state;
     const index = this.chosenLine ? shownLines.indexOf(this.chosenLine) : shownLines.length;
-    if (event.key === "ArrowUp") this.choose(shownLines[Math.max(0, index - 1)] ?? null);
-    else if (event.key === "ArrowDown") this.choose(shownLines[Math.min(shownLines.length - 1, index + 1)] ?? null);
-    else if (event.key === "Escape") this.choose(null);
+    if (event.key === "ArrowUp") this.chooseLine(shownLines[Math.max(0, index - 1)] ?? null);
+    else if (event.key === "ArrowDown") this.chooseLine(shownLines[Math.min(shownLines.length - 1, index + 1)] ?? null);
+    else if (event.key === "Escape") this.chooseLine(null);
     else if (event.key === "End") this.list.follow();
     else return;
     event.preventDefault();
@@ -146,7 +146,7 @@ export class LogPanel implements Panel {
   }
 
   /** Shows a record in full below the list. */
-  private choose(line: LogLine | null): void {
+  private chooseLine(line: LogLine | null): void {
     this.chosenLine = line;
     this.list.show(this.state.shownLines);
     this.details.hidden = line === null;
@@ -164,6 +164,6 @@ export class LogPanel implements Panel {
   }
 }
 
-function placeOf({ file, line }: LogLine): string {
+function formatLocation({ file, line }: LogLine): string {
   return file === "" ? "" : `${file.split("/").at(-1) ?? ""}:${line}`;
 }

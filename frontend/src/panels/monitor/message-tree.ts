@@ -1,9 +1,9 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { MessageField } from "../../protocol";
 import { strings } from "../../strings";
 
-interface Row {
+interface FieldRow {
   readonly element: HTMLElement;
   readonly value: HTMLElement;
   readonly children: HTMLElement;
@@ -15,7 +15,7 @@ interface Row {
 /** A message as a tree that unfolds row by row; a new message changes the values and keeps the unfolded rows. */
 export class MessageTree {
   readonly element = h("div", { class: "message-tree" });
-  private readonly rows = new Map<string, Row>();
+  private readonly rows = new Map<string, FieldRow>();
   private readonly openPaths = new Set<string>();
   private fields: readonly MessageField[] = [];
 
@@ -26,13 +26,13 @@ export class MessageTree {
     // Short messages are unfolded from the start.
     if (this.fields.length === 0 && fields.length <= 3) for (const { name } of fields) this.openPaths.add(name);
     this.fields = fields;
-    this.fill(this.element, fields, "", null);
+    this.fillRows(this.element, fields, "", null);
   }
 
-  private fill(box: HTMLElement, fields: readonly MessageField[], prefix: string, end: HTMLElement | null): void {
+  private fillRows(container: HTMLElement, fields: readonly MessageField[], prefix: string, lastElement: HTMLElement | null): void {
     const rows = fields.map((field) => {
       const path = field.name.startsWith("[") ? `${prefix}${field.name}` : prefix === "" ? field.name : `${prefix}.${field.name}`;
-      const row = this.rowFor(path, field);
+      const row = this.findOrCreateRow(path, field);
       if (row.value.textContent !== field.value) row.value.textContent = field.value;
       const isOpen = this.openPaths.has(path);
       row.toggle?.setAttribute("aria-expanded", String(isOpen));
@@ -40,22 +40,22 @@ export class MessageTree {
       if (isOpen) {
         const omittedText = field.omitted > 0 ? strings.monitor.topics.omitted(field.omitted) : "";
         if (row.omittedNote.textContent !== omittedText) row.omittedNote.textContent = omittedText;
-        this.fill(row.children, field.children, path, row.omittedNote);
+        this.fillRows(row.children, field.children, path, row.omittedNote);
       }
       return row.element;
     });
-    if (end) rows.push(end);
-    const isUnchanged = rows.length === box.childElementCount && rows.every((row, index) => row === box.children[index]);
-    if (!isUnchanged) box.replaceChildren(...rows);
+    if (lastElement) rows.push(lastElement);
+    const isUnchanged = rows.length === container.childElementCount && rows.every((row, index) => row === container.children[index]);
+    if (!isUnchanged) container.replaceChildren(...rows);
   }
 
-  private rowFor(path: string, field: MessageField): Row {
+  private findOrCreateRow(path: string, field: MessageField): FieldRow {
     const existing = this.rows.get(path);
     const hasChildren = field.children.length > 0;
     if (existing && (existing.toggle !== null) === hasChildren) return existing;
     const value = h("span", { class: "message-value" });
     const children = h("div", { class: "message-children" });
-    const toggle = hasChildren ? button(field.name, () => this.toggle(path), "expander", icon("chevron")) : null;
+    const toggle = hasChildren ? createButton(field.name, () => this.toggle(path), "expander", createIcon("chevron")) : null;
     const isNumber = !hasChildren && isNumeric(field);
     const head = h(
       "div",
@@ -64,22 +64,22 @@ export class MessageTree {
       h("span", { class: "message-name" }, field.name),
       value,
       h("span", { class: "note kind" }, field.kind),
-      isNumber ? button(strings.monitor.topics.plot, () => this.onPlotField(path), "tool bare", icon("plot")) : null,
+      isNumber ? createButton(strings.monitor.topics.plot, () => this.onPlotField(path), "tool bare", createIcon("plot")) : null,
     );
     const omittedNote = h("div", { class: "note" });
-    const node = { element: h("div", {}, head, children), value, children, toggle, omittedNote };
-    this.rows.set(path, node);
-    return node;
+    const row = { element: h("div", {}, head, children), value, children, toggle, omittedNote };
+    this.rows.set(path, row);
+    return row;
   }
 
   private toggle(path: string): void {
     if (!this.openPaths.delete(path)) this.openPaths.add(path);
-    this.fill(this.element, this.fields, "", null);
+    this.fillRows(this.element, this.fields, "", null);
   }
 }
 
-const NUMERIC = /^(u?int(8|16|32|64)|float|double|boolean|octet)$/;
+const NUMERIC_KINDS = /^(u?int(8|16|32|64)|float|double|boolean|octet)$/;
 
 function isNumeric({ kind }: MessageField): boolean {
-  return NUMERIC.test(kind);
+  return NUMERIC_KINDS.test(kind);
 }

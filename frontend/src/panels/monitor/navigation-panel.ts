@@ -1,20 +1,20 @@
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import type { NavigationCommand } from "../../protocol";
 import type { NavigationState } from "../../state/monitor/navigation";
 import { strings } from "../../strings";
 import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
-type Row = "navigation" | "localization" | "goal" | "eta" | "distance" | "taken" | "recoveries";
+type RowName = "navigation" | "localization" | "goal" | "eta" | "distance" | "elapsed" | "recoveries";
 
-const ROWS: readonly Row[] = ["navigation", "localization", "goal", "eta", "distance", "taken", "recoveries"];
+const ROW_NAMES: readonly RowName[] = ["navigation", "localization", "goal", "eta", "distance", "elapsed", "recoveries"];
 
 /** nav2's panel "Navigation 2": states of the nodes, progress of the goal, and commands. */
 export class NavigationPanel implements Panel {
   readonly id = "navigation";
   readonly icon = "navigation";
   readonly element: HTMLElement;
-  private readonly values: Record<Row, HTMLElement>;
+  private readonly values: Record<RowName, HTMLElement>;
   private readonly buttons: Record<NavigationCommand, HTMLButtonElement>;
   private readonly problem = h("p", { class: "note wrong", aria: { live: "polite" } });
 
@@ -27,11 +27,11 @@ export class NavigationPanel implements Panel {
       goal: createValue(),
       eta: createValue(),
       distance: createValue(),
-      taken: createValue(),
+      elapsed: createValue(),
       recoveries: createValue(),
     };
     const createCommandButton = (command: NavigationCommand): HTMLButtonElement =>
-      button(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
+      createButton(texts.hints[command], () => state.sendCommand(command), "tool", texts.commands[command]);
     this.buttons = {
       startup: createCommandButton("startup"),
       pause: createCommandButton("pause"),
@@ -46,7 +46,7 @@ export class NavigationPanel implements Panel {
         "div",
         { class: "scroll navigation" },
         h("div", { class: "toolbar navigation-buttons" }, ...Object.values(this.buttons)),
-        h("dl", { class: "navigation-rows" }, ...ROWS.flatMap((row) => [h("dt", { class: "toolbar-label" }, texts.rows[row]), h("dd", {}, this.values[row])])),
+        h("dl", { class: "navigation-rows" }, ...ROW_NAMES.flatMap((row) => [h("dt", { class: "toolbar-label" }, texts.rows[row]), h("dd", {}, this.values[row])])),
         this.problem,
       ),
     );
@@ -58,7 +58,7 @@ export class NavigationPanel implements Panel {
   private show(): void {
     const texts = strings.monitor.navigation;
     const { lastState } = this.state;
-    const setRow = (row: Row, text: string, kind = ""): void => {
+    const setRow = (row: RowName, text: string, kind = ""): void => {
       this.values[row].textContent = text;
       this.values[row].dataset["state"] = kind;
     };
@@ -70,20 +70,20 @@ export class NavigationPanel implements Panel {
     const goal = lastState?.goal ?? "none";
     setRow("goal", texts.goals[goal], goal);
     setRow("eta", formatSeconds(lastState?.eta));
-    setRow("taken", formatSeconds(lastState?.elapsed));
+    setRow("elapsed", formatSeconds(lastState?.elapsed));
     setRow("distance", lastState?.distance === null || lastState?.distance === undefined ? texts.none : `${lastState.distance.toFixed(2)} m`);
     setRow("recoveries", lastState?.recoveries === null || lastState?.recoveries === undefined ? texts.none : String(lastState.recoveries));
     this.problem.textContent = lastState?.problem ?? "";
-    this.enable();
+    this.updateButtons();
   }
 
   /** Enables the buttons whose commands are possible now. */
-  private enable(): void {
+  private updateButtons(): void {
     const { lastState } = this.state;
     const managers = lastState ? [lastState.navigation, lastState.localization].filter((state) => state !== "unknown") : [];
     const isActive = managers.includes("active");
     const isIdle = managers.includes("inactive");
-    const can: Record<NavigationCommand, boolean> = {
+    const isPossible: Record<NavigationCommand, boolean> = {
       startup: isIdle,
       pause: isActive,
       resume: isIdle,
@@ -91,7 +91,7 @@ export class NavigationPanel implements Panel {
       cancel: lastState?.goal === "active",
     };
     for (const [command, element] of Object.entries(this.buttons) as [NavigationCommand, HTMLButtonElement][]) {
-      element.disabled = !can[command] || lastState?.busy === true;
+      element.disabled = !isPossible[command] || lastState?.busy === true;
     }
   }
 }

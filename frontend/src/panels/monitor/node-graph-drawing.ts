@@ -3,19 +3,19 @@ import { layOutLayers, type PlacedBox, type Route } from "../../state/monitor/gr
 import type { DrawnGraph, GraphVertex } from "../../state/monitor/graph-model";
 import { PanZoom } from "../../widgets/pan-zoom";
 
-const SVG = "http://www.w3.org/2000/svg";
-const BOX_HEIGHT = 28;
-const PADDING = 24;
+const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
+const BOX_HEIGHT_PX = 28;
+const PADDING_PX = 24;
 const TEXT_PX = 12;
 
 /** The graph as SVG; it can be dragged, zoomed with the wheel, and one vertex chosen by mouse or keyboard. */
 export class NodeGraphDrawing {
   readonly element = h("div", { class: "graph-drawing", tabIndex: 0, role: "group" });
-  private readonly scene = createSvgElement("g", {});
-  private readonly measure = document.createElement("canvas").getContext("2d");
+  private readonly drawing = createSvgElement("g", {});
+  private readonly measureContext = document.createElement("canvas").getContext("2d");
   private graph: DrawnGraph = { vertices: [], edges: [] };
   private size: readonly [number, number] = [1, 1];
-  private readonly pan: PanZoom;
+  private readonly panZoom: PanZoom;
   /**
    * The part of the graph in view, which is restored when the graph or the panel changes: a legible part, the whole
    * graph, or what the user moved to.
@@ -26,16 +26,16 @@ export class NodeGraphDrawing {
 
   constructor(
     label: string,
-    private readonly onChosen: (vertex: GraphVertex | null) => void,
+    private readonly onVertexChosen: (vertex: GraphVertex | null) => void,
   ) {
     this.element.setAttribute("aria-label", label);
     const svg = createSvgElement("svg", {});
-    svg.append(createArrowHeads(), this.scene);
+    svg.append(createArrowHeads(), this.drawing);
     this.element.append(svg);
-    this.pan = new PanZoom(this.element, (x, y, scale) => this.onMoved(x, y, scale), () => this.fit());
+    this.panZoom = new PanZoom(this.element, (x, y, scale) => this.onMoved(x, y, scale), () => this.fit());
     this.element.addEventListener("click", (event) => this.onClick(event.target as Element));
     this.element.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") onChosen(null);
+      if (event.key === "Escape") onVertexChosen(null);
     });
     new ResizeObserver(() => {
       this.placeDrawing();
@@ -45,15 +45,15 @@ export class NodeGraphDrawing {
   /** Draws a graph; keeps the view if the user has moved it. */
   show(graph: DrawnGraph): void {
     this.graph = graph;
-    if (this.measure) this.measure.font = `12px ${getComputedStyle(document.body).fontFamily}`;
-    const boxes = graph.vertices.map((vertex) => ({ id: vertex.id, width: this.widthOf(vertex), height: BOX_HEIGHT }));
+    if (this.measureContext) this.measureContext.font = `12px ${getComputedStyle(document.body).fontFamily}`;
+    const boxes = graph.vertices.map((vertex) => ({ id: vertex.id, width: this.computeWidth(vertex), height: BOX_HEIGHT_PX }));
     const layout = layOutLayers(boxes, graph.edges);
     this.size = [layout.width, layout.height];
     this.boxes = layout.boxes;
     const vertices = new Map(graph.vertices.map((vertex) => [vertex.id, vertex]));
-    const edges = layout.routes.map((route) => drawRoute(route, this.topicsOf(route)));
+    const edges = layout.routes.map((route) => drawRoute(route, this.formatTopics(route)));
     const shapes = [...layout.boxes.values()].map((box) => this.drawBox(box, vertices.get(box.id)));
-    this.scene.replaceChildren(...edges, ...shapes);
+    this.drawing.replaceChildren(...edges, ...shapes);
     this.placeDrawing();
   }
 
@@ -63,13 +63,13 @@ export class NodeGraphDrawing {
     const { edges } = this.graph;
     const neighbors = new Set(edges.flatMap(({ source, target }) => (source === id ? [target] : target === id ? [source] : [])));
     this.element.classList.toggle("marked", id !== null);
-    for (const shape of this.scene.querySelectorAll<SVGElement>("[data-id]")) {
+    for (const shape of this.drawing.querySelectorAll<SVGElement>("[data-id]")) {
       const shapeId = shape.dataset["id"] ?? "";
       shape.classList.toggle("chosen", shapeId === id);
       shape.classList.toggle("near", neighbors.has(shapeId));
       shape.setAttribute("aria-pressed", String(shapeId === id));
     }
-    for (const edge of this.scene.querySelectorAll<SVGElement>("[data-from]")) {
+    for (const edge of this.drawing.querySelectorAll<SVGElement>("[data-from]")) {
       edge.classList.toggle("near", id !== null && (edge.dataset["from"] === id || edge.dataset["to"] === id));
     }
   }
@@ -77,7 +77,7 @@ export class NodeGraphDrawing {
   /** Fits the whole graph into the panel. */
   fit(): void {
     if (this.element.clientWidth === 0) return;
-    this.pan.fitImage(...this.size);
+    this.panZoom.fitImage(...this.size);
     this.viewMode = "all";
   }
 
@@ -85,7 +85,7 @@ export class NodeGraphDrawing {
     if (this.viewMode === "all") this.fit();
     if (this.viewMode !== "legible" || this.element.clientWidth === 0) return;
     const box = this.boxes.get(this.markedId ?? "") ?? this.findBusiestBox();
-    this.pan.showLegibly(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
+    this.panZoom.showLegibly(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
     this.viewMode = "legible";
   }
 
@@ -93,8 +93,8 @@ export class NodeGraphDrawing {
   private findBusiestBox(): PlacedBox | undefined {
     const degrees = new Map<string, number>();
     for (const id of this.graph.edges.flatMap(({ source, target }) => [source, target])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
-    const [first] = [...degrees].sort(([, a], [, b]) => b - a);
-    return this.boxes.get(first?.[0] ?? "");
+    const [busiestVertex] = [...degrees].sort(([, a], [, b]) => b - a);
+    return this.boxes.get(busiestVertex?.[0] ?? "");
   }
 
   private drawBox(box: PlacedBox, vertex: GraphVertex | undefined): SVGElement {
@@ -108,40 +108,40 @@ export class NodeGraphDrawing {
     });
     const cornerRadius = vertex?.kind === "topic" || vertex?.kind === "action" ? "3" : String(box.height / 2);
     const text = createSvgElement("text", { x: String(box.width / 2), y: String(box.height / 2), dy: "0.34em" });
-    text.textContent = labelOf(vertex);
+    text.textContent = formatLabel(vertex);
     shape.append(createSvgElement("rect", { width: String(box.width), height: String(box.height), rx: cornerRadius }), text);
     shape.addEventListener("keydown", (event) => {
       if (event.key !== "Enter" && event.key !== " ") return;
       event.preventDefault();
       event.stopPropagation();
-      this.onChosen(vertex ?? null);
+      this.onVertexChosen(vertex ?? null);
     });
     return shape;
   }
 
-  private topicsOf({ source, target }: Route): string {
+  private formatTopics({ source, target }: Route): string {
     const edge = this.graph.edges.find((candidate) => candidate.source === source && candidate.target === target);
     return edge?.topics.join("\n") ?? "";
   }
 
-  private widthOf(vertex: GraphVertex): number {
-    const text = labelOf(vertex);
-    return Math.ceil(this.measure?.measureText(text).width ?? text.length * 7) + PADDING;
+  private computeWidth(vertex: GraphVertex): number {
+    const text = formatLabel(vertex);
+    return Math.ceil(this.measureContext?.measureText(text).width ?? text.length * 7) + PADDING_PX;
   }
 
   private onClick(target: Element): void {
-    if (this.pan.wasDragged) return;
+    if (this.panZoom.wasDragged) return;
     const id = target.closest<SVGElement>("[data-id]")?.dataset["id"];
-    this.onChosen(this.graph.vertices.find((vertex) => vertex.id === id) ?? null);
+    this.onVertexChosen(this.graph.vertices.find((vertex) => vertex.id === id) ?? null);
   }
 
   private onMoved(x: number, y: number, scale: number): void {
     this.viewMode = "chosen";
-    this.scene.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
+    this.drawing.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
   }
 }
 
-function labelOf(vertex: GraphVertex | undefined): string {
+function formatLabel(vertex: GraphVertex | undefined): string {
   if (!vertex) return "";
   return vertex.kind === "group" ? `${vertex.label} (${vertex.count})` : vertex.label;
 }
@@ -181,7 +181,7 @@ function createArrowHeads(): SVGElement {
 }
 
 function createSvgElement<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Readonly<Record<string, string>>): SVGElementTagNameMap[K] {
-  const element = document.createElementNS(SVG, tag);
+  const element = document.createElementNS(SVG_NAMESPACE, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   return element;
 }

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { buildGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
 import type { NodeGraphState } from "../../state/monitor/node-graph";
 import { strings } from "../../strings";
@@ -15,7 +15,7 @@ export class NodeGraphPanel implements Panel {
   readonly element: HTMLElement;
   private readonly drawing: NodeGraphDrawing;
   private readonly details = h("div", { class: "graph-details", aria: { live: "polite" } });
-  private readonly empty = h("p", { class: "empty" }, strings.monitor.graph.none);
+  private readonly emptyNote = h("p", { class: "empty" }, strings.monitor.graph.none);
   private readonly options: GraphOptions & { openGroups: Set<string> } = {
     mode: "active",
     showsDebug: false,
@@ -33,12 +33,12 @@ export class NodeGraphPanel implements Panel {
       ["active", texts.modes.active],
       ["all", texts.modes.all],
     ];
-    const mode = createSelect(texts.mode, modes, (value) => {
+    const modeSelect = createSelect(texts.mode, modes, (value) => {
       this.options.mode = value;
       this.show();
     });
-    mode.value = this.options.mode;
-    const createTick = (name: "showsDebug" | "showsTf" | "groupsNamespaces", text: string, hint: string): HTMLElement => {
+    modeSelect.value = this.options.mode;
+    const createOptionBox = (name: "showsDebug" | "showsTf" | "groupsNamespaces", text: string, hint: string): HTMLElement => {
       const label = createTickBox(text, hint, (isTicked) => {
         this.options[name] = isTicked;
         this.options.openGroups.clear();
@@ -47,19 +47,19 @@ export class NodeGraphPanel implements Panel {
       label.box.checked = this.options[name];
       return label;
     };
-    const bar = h(
+    const toolbar = h(
       "div",
       { class: "toolbar" },
-      mode,
-      createTick("showsTf", texts.tf, texts.tfHint),
-      createTick("showsDebug", texts.debug, texts.debugHint),
-      createTick("groupsNamespaces", texts.groups, texts.groupsHint),
+      modeSelect,
+      createOptionBox("showsTf", texts.tf, texts.tfHint),
+      createOptionBox("showsDebug", texts.debug, texts.debugHint),
+      createOptionBox("groupsNamespaces", texts.groups, texts.groupsHint),
       h("span", { class: "spacer" }),
-      button(texts.fitHint, () => this.drawing.fit(), "tool", icon("center"), texts.fit),
+      createButton(texts.fitHint, () => this.drawing.fit(), "tool", createIcon("center"), texts.fit),
     );
-    const stage = h("div", { class: "graph-stage" }, this.empty);
-    stage.append(this.drawing.element);
-    this.element = h("div", { class: "panel monitor" }, bar, stage, this.details);
+    const drawingBox = h("div", { class: "graph-stage" }, this.emptyNote);
+    drawingBox.append(this.drawing.element);
+    this.element = h("div", { class: "panel monitor" }, toolbar, drawingBox, this.details);
     state.changed.on(() => this.show());
     onVisibilityChange(this.element, (isVisible) => state.watch(isVisible));
     this.show();
@@ -67,7 +67,7 @@ export class NodeGraphPanel implements Panel {
 
   private show(): void {
     const graph = buildGraph(this.state.graph, this.options);
-    this.empty.hidden = graph.vertices.length > 0;
+    this.emptyNote.hidden = graph.vertices.length > 0;
     this.drawing.show(graph);
     if (!graph.vertices.some(({ id }) => id === this.chosenId)) this.chosenId = null;
     this.drawing.mark(this.chosenId);
@@ -87,30 +87,30 @@ export class NodeGraphPanel implements Panel {
 
   private showDetails(): void {
     const texts = strings.monitor.graph;
-    const [kind, name] = split(this.chosenId);
+    const [kind, name] = splitVertexId(this.chosenId);
     const { topics } = this.state.graph;
-    const list = (text: string, names: readonly string[]): HTMLElement | null =>
+    const createNameList = (text: string, names: readonly string[]): HTMLElement | null =>
       names.length === 0
         ? null
         : h("div", { class: "graph-list" }, h("span", { class: "note" }, text), h("span", {}, names.join(", ")));
     if (kind === "node") {
       const publishes = topics.filter((topic) => topic.publishers.includes(name)).map((topic) => topic.name);
       const subscribes = topics.filter((topic) => topic.subscribers.includes(name)).map((topic) => topic.name);
-      this.fill(h("strong", {}, name), list(texts.publishes, publishes), list(texts.subscribes, subscribes));
+      this.showInDetails(h("strong", {}, name), createNameList(texts.publishes, publishes), createNameList(texts.subscribes, subscribes));
     } else if (kind === "topic") {
       const topic = topics.find((candidate) => candidate.name === name);
       const types = h("code", { class: "code" }, topic?.types.join(", ") ?? "");
       const title = h("strong", {}, name, " ", types);
-      const ends = [
-        list(texts.publishedBy, topic?.publishers ?? []),
-        list(texts.subscribedBy, topic?.subscribers ?? []),
+      const nameLists = [
+        createNameList(texts.publishedBy, topic?.publishers ?? []),
+        createNameList(texts.subscribedBy, topic?.subscribers ?? []),
       ] as const;
-      this.fill(title, ...ends);
-    } else this.fill(h("span", { class: "note" }, texts.hint));
+      this.showInDetails(title, ...nameLists);
+    } else this.showInDetails(h("span", { class: "note" }, texts.hint));
   }
 
-  private fill(...children: readonly (HTMLElement | null)[]): void {
-    const close = button(
+  private showInDetails(...children: readonly (HTMLElement | null)[]): void {
+    const closeGroupsButton = createButton(
       strings.monitor.graph.closeGroups,
       () => {
         this.options.openGroups.clear();
@@ -119,12 +119,12 @@ export class NodeGraphPanel implements Panel {
       "tool",
       strings.monitor.graph.closeGroups,
     );
-    const closeButton = this.options.openGroups.size > 0 ? close : null;
+    const closeButton = this.options.openGroups.size > 0 ? closeGroupsButton : null;
     this.details.replaceChildren(...[...children, closeButton].filter((child) => child !== null));
   }
 }
 
-function split(id: string | null): [string, string] {
+function splitVertexId(id: string | null): [string, string] {
   const colon = id?.indexOf(":") ?? -1;
   return id === null ? ["", ""] : [id.slice(0, colon), id.slice(colon + 1)];
 }

@@ -16,7 +16,7 @@ export class ParameterLine {
 
   constructor(
     row: ParameterRow,
-    private readonly set: (name: string, kind: ParameterKind, values: string[]) => void,
+    private readonly setParameter: (name: string, kind: ParameterKind, values: string[]) => void,
   ) {
     const texts = strings.monitor.parameters;
     this.row = row;
@@ -29,7 +29,7 @@ export class ParameterLine {
       this.editor.inputMode = "decimal";
       this.editor.classList.add("numeric");
     }
-    this.slider = this.makeSlider();
+    this.slider = this.createSlider();
     this.bindInputs();
     const range = row.minimum === "" ? "" : texts.range(row.minimum, row.maximum, row.step);
     const hint = [row.description, row.constraints].filter((text) => text !== "").join(" ");
@@ -48,9 +48,9 @@ export class ParameterLine {
 
   /** Whether this line can show a row: its editor suits one type and range only. */
   isSameParameter(row: ParameterRow): boolean {
-    const factsOf = ({ kind, read_only, minimum, maximum, description }: ParameterRow): string =>
+    const editorKeyOf = ({ kind, read_only, minimum, maximum, description }: ParameterRow): string =>
       JSON.stringify([kind, read_only, minimum, maximum, description]);
-    return factsOf(row) === factsOf(this.row);
+    return editorKeyOf(row) === editorKeyOf(this.row);
   }
 
   /** Shows the value that the node has, except over text that the user is editing. */
@@ -75,7 +75,7 @@ export class ParameterLine {
     return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : formatParameter(this.row.kind, this.row.values);
   }
 
-  private makeSlider(): HTMLInputElement | null {
+  private createSlider(): HTMLInputElement | null {
     const { kind, minimum, maximum, step, read_only, name } = this.row;
     const [low, high] = [Number(minimum), Number(maximum)];
     if (minimum === "" || read_only || !Number.isFinite(high - low) || high <= low) return null;
@@ -112,7 +112,7 @@ export class ParameterLine {
   }
 
   private send(values: string[]): void {
-    this.set(this.row.name, this.row.kind, values);
+    this.setParameter(this.row.name, this.row.kind, values);
   }
 }
 

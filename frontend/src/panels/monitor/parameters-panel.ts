@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { ParametersState } from "../../state/monitor/parameters";
 import { strings } from "../../strings";
 import { createTextField } from "../../widgets/controls";
@@ -13,25 +13,25 @@ export class ParametersPanel implements Panel {
   readonly id = "parameters";
   readonly icon = "parameters";
   readonly element: HTMLElement;
-  private readonly nodes = h("ul", { class: "node-list", role: "listbox", aria: { label: strings.monitor.parameters.nodes } });
+  private readonly nodeList = h("ul", { class: "node-list", role: "listbox", aria: { label: strings.monitor.parameters.nodes } });
   private readonly rows = h("div", { class: "parameter-rows" });
   private readonly note = h("p", { class: "empty" });
-  private readonly dump: HTMLButtonElement;
+  private readonly dumpButton: HTMLButtonElement;
   private readonly lines = new Map<string, ParameterLine>();
   private shownNode: string | null = null;
   private filter = "";
 
   constructor(private readonly state: ParametersState) {
     const texts = strings.monitor.parameters;
-    this.dump = button(texts.dumpHint, () => state.dump(), "tool", icon("download"), texts.dump);
+    this.dumpButton = createButton(texts.dumpHint, () => state.dump(), "tool", createIcon("download"), texts.dump);
     const filter = createTextField(strings.monitor.filter, (text) => {
       this.filter = text.trim().toLowerCase();
       this.show();
     });
-    const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), this.dump);
-    const right = h("div", { class: "scroll" }, this.note, this.rows);
-    this.element = h("div", { class: "panel monitor" }, bar, h("div", { class: "parameters" }, this.nodes, right));
-    this.nodes.addEventListener("keydown", (event) => this.onKeyDown(event));
+    const toolbar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), this.dumpButton);
+    const parameterList = h("div", { class: "scroll" }, this.note, this.rows);
+    this.element = h("div", { class: "panel monitor" }, toolbar, h("div", { class: "parameters" }, this.nodeList, parameterList));
+    this.nodeList.addEventListener("keydown", (event) => this.onKeyDown(event));
     state.nodesChanged.on(() => this.showNodes());
     state.changed.on(() => this.show());
     state.resultArrived.on(({ name, successful, reason }) => this.lines.get(name)?.showResult(successful, reason));
@@ -46,7 +46,7 @@ export class ParametersPanel implements Panel {
 
   private showNodes(): void {
     const { nodes, node } = this.state;
-    const hasFocus = this.nodes.contains(document.activeElement);
+    const hasFocus = this.nodeList.contains(document.activeElement);
     const items = nodes.map((name) => {
       const item = h("li", { role: "option", title: name, tabIndex: name === (node ?? nodes[0]) ? 0 : -1 }, name);
       item.setAttribute("aria-selected", String(name === node));
@@ -54,24 +54,24 @@ export class ParametersPanel implements Panel {
       return item;
     });
     const emptyNote = h("li", { class: "note" }, strings.monitor.parameters.noNodes);
-    this.nodes.replaceChildren(...(items.length > 0 ? items : [emptyNote]));
+    this.nodeList.replaceChildren(...(items.length > 0 ? items : [emptyNote]));
     if (hasFocus) items[nodes.indexOf(node ?? "")]?.focus();
   }
 
   private choose(name: string): void {
-    this.state.choose(name);
+    this.state.chooseNode(name);
   }
 
   private onKeyDown(event: KeyboardEvent): void {
     const { nodes } = this.state;
-    const items = [...this.nodes.children] as HTMLElement[];
+    const items = [...this.nodeList.children] as HTMLElement[];
     const index = items.indexOf(document.activeElement as HTMLElement);
-    const next = event.key === "ArrowDown" ? index + 1 : event.key === "ArrowUp" ? index - 1 : index;
-    const name = nodes[next];
+    const nextIndex = event.key === "ArrowDown" ? index + 1 : event.key === "ArrowUp" ? index - 1 : index;
+    const name = nodes[nextIndex];
     if (name === undefined || index < 0) return;
-    if (next !== index) {
+    if (nextIndex !== index) {
       this.choose(name);
-      (this.nodes.children[next] as HTMLElement).focus();
+      (this.nodeList.children[nextIndex] as HTMLElement).focus();
     } else if (event.key === "Enter" || event.key === " ") this.choose(name);
     else return;
     event.preventDefault();
@@ -80,7 +80,7 @@ export class ParametersPanel implements Panel {
   private show(): void {
     const texts = strings.monitor.parameters;
     const { node, parameters } = this.state;
-    this.dump.disabled = node === null;
+    this.dumpButton.disabled = node === null;
     if (node !== this.shownNode) {
       this.lines.clear();
       this.shownNode = node;

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { formatField, formatValue } from "../../state/monitor/field-text";
 import { formatCsv } from "../../state/monitor/plot-table";
 import type { Plot, PlotsState, Series } from "../../state/monitor/plots";
@@ -15,9 +15,9 @@ export class PlotBox {
   readonly element: HTMLElement;
   private readonly legend = h("div", { class: "plot-legend" });
   private readonly pickerBox = h("div", { class: "picker-box" });
-  private readonly range = h("span", { class: "plot-range" });
+  private readonly rangeBox = h("span", { class: "plot-range" });
   private readonly chart: PlotChart;
-  private readonly values = new Map<Series, HTMLElement>();
+  private readonly valueOutputs = new Map<Series, HTMLElement>();
   private picker: PlotPicker | null = null;
 
   constructor(
@@ -32,13 +32,13 @@ export class PlotBox {
       { class: "plot-head" },
       this.legend,
       h("span", { class: "spacer" }),
-      this.range,
-      button(texts.addSeries, () => this.openPicker(), "tool bare", icon("plus")),
-      button(texts.csvHintOf, () => this.saveCsv(), "tool bare", icon("download")),
-      button(texts.removePlot, () => state.removePlot(plot), "tool bare", icon("close")),
+      this.rangeBox,
+      createButton(texts.addSeries, () => this.openPicker(), "tool bare", createIcon("plus")),
+      createButton(texts.csvHintOf, () => this.saveCsv(), "tool bare", createIcon("download")),
+      createButton(texts.removePlot, () => state.removePlot(plot), "tool bare", createIcon("close")),
     );
-    const label = { label: texts.diagram };
-    this.element = h("section", { class: "plot", aria: label }, head, this.pickerBox, this.chart.element);
+    const ariaLabel = { label: texts.diagram };
+    this.element = h("section", { class: "plot", aria: ariaLabel }, head, this.pickerBox, this.chart.element);
     this.element.addEventListener("dblclick", (event) => {
       if (this.chart.element.contains(event.target as Node)) state.setPaused(false);
     });
@@ -48,16 +48,16 @@ export class PlotBox {
   /** Updates after series, errors or settings have changed. */
   show(): void {
     const texts = strings.monitor.plot;
-    this.values.clear();
+    this.valueOutputs.clear();
     const chips = this.plot.series.map((series, index) => {
       const value = h("output", { class: "plot-value" });
-      this.values.set(series, value);
+      this.valueOutputs.set(series, value);
       const name = formatField(series);
-      const mark = h("span", { class: "plot-mark" });
-      mark.style.background = seriesColorOf(index);
-      const remove = button(texts.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", icon("close"));
+      const colorMark = h("span", { class: "plot-mark" });
+      colorMark.style.background = seriesColorOf(index);
+      const removeButton = createButton(texts.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", createIcon("close"));
       const hint = series.error ?? name;
-      return h("span", { class: series.error === null ? "chip" : "chip wrong", title: hint }, mark, name, value, remove);
+      return h("span", { class: series.error === null ? "chip" : "chip wrong", title: hint }, colorMark, name, value, removeButton);
     });
     if (!this.picker && chips.length === 0) chips.push(h("span", { class: "note" }, texts.empty));
     this.legend.replaceChildren(...chips);
@@ -95,7 +95,7 @@ export class PlotBox {
 
   private showValues(): void {
     this.plot.series.forEach((series, index) => {
-      const output = this.values.get(series);
+      const output = this.valueOutputs.get(series);
       const { valuesAtCursor } = this.chart;
       const value = valuesAtCursor ? (valuesAtCursor[index] ?? null) : series.buffer.lastValue;
       const text = series.error ?? formatValue(value);
@@ -106,17 +106,17 @@ export class PlotBox {
   private showRange(): void {
     const texts = strings.monitor.plot;
     const { range } = this.plot;
-    const toggle = button(
+    const toggle = createButton(
       texts.rangeHint,
       () => this.state.setRange(this.plot, range ? null : this.readShownRange()),
       range ? "tool on" : "tool",
       range ? texts.fixed : texts.auto,
     );
     toggle.setAttribute("aria-pressed", String(range !== null));
-    this.range.replaceChildren(toggle);
+    this.rangeBox.replaceChildren(toggle);
     if (!range) return;
     const [low, high] = range;
-    this.range.append(
+    this.rangeBox.append(
       createNumberField(texts.lowest, low, [-Infinity, high], (value) => this.state.setRange(this.plot, [value, high])),
       createNumberField(texts.highest, high, [low, Infinity], (value) => this.state.setRange(this.plot, [low, value])),
     );
@@ -125,13 +125,13 @@ export class PlotBox {
   /** Returns the range of the visible values, rounded, as the initial fixed range. */
   private readShownRange(): [number, number] {
     const [startTime, endTime] = this.state.window ?? [0, 0];
-    const shownSeries = this.plot.series.flatMap(({ buffer }) => {
+    const shownValues = this.plot.series.flatMap(({ buffer }) => {
       const start = buffer.indexFrom(this.state.source, startTime);
       return [...buffer.values.subarray(start, buffer.indexFrom(this.state.source, endTime) + 1)].filter(Number.isFinite);
     });
-    if (shownSeries.length === 0) return [-1, 1];
-    const low = shownSeries.reduce((a, b) => Math.min(a, b));
-    const high = shownSeries.reduce((a, b) => Math.max(a, b));
+    if (shownValues.length === 0) return [-1, 1];
+    const low = shownValues.reduce((a, b) => Math.min(a, b));
+    const high = shownValues.reduce((a, b) => Math.max(a, b));
     return high > low ? [Number(low.toPrecision(3)), Number(high.toPrecision(3))] : [low - 1, high + 1];
   }
 

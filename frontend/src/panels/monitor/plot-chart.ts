@@ -6,9 +6,9 @@ import type { Plot, PlotsState } from "../../state/monitor/plots";
 
 const COLOR_COUNT = 8;
 const AXIS_FONT = "10.5px system-ui, sans-serif";
-const Y_AXIS_PX = 58;
+const Y_AXIS_WIDTH_PX = 58;
 /** s; greater times are calendar times, smaller ones are counted from the start of a simulation. */
-const MIN_CALENDAR_TIME = 1e8;
+const MIN_CALENDAR_TIME_S = 1e8;
 
 /** Returns the color of a plot's series, as a CSS variable. */
 export function seriesColorOf(index: number): string {
@@ -46,12 +46,12 @@ export class PlotChart {
     const { chart } = this;
     if (!chart) return;
     const [start, end] = state.window ?? [0, state.seconds];
-    const columns = Math.max(16, Math.round(width - Y_AXIS_PX));
-    const table = tabulatePlot(plot.series.map((series) => series.buffer), state.source, start, end, columns);
+    const pixelColumns = Math.max(16, Math.round(width - Y_AXIS_WIDTH_PX));
+    const table = tabulatePlot(plot.series.map((series) => series.buffer), state.source, start, end, pixelColumns);
     chart.batch(() => {
       chart.setData(table, false);
       chart.setScale("x", { min: start, max: end });
-      const [low, high] = plot.range ?? rangeOf(table);
+      const [low, high] = plot.range ?? computeRange(table);
       chart.setScale("y", { min: low, max: high });
     });
   }
@@ -85,11 +85,11 @@ export class PlotChart {
   private rebuild(Chart: typeof uPlot, width: number, height: number): void {
     this.dispose();
     this.seriesCount = this.plot.series.length;
-    const color = (name: string) => () => getComputedStyle(this.element).getPropertyValue(name).trim();
+    const readColor = (name: string) => () => getComputedStyle(this.element).getPropertyValue(name).trim();
     const axis: uPlot.Axis = {
-      stroke: color("--text-faint"),
+      stroke: readColor("--text-faint"),
       font: AXIS_FONT,
-      grid: { stroke: color("--line"), width: 1 },
+      grid: { stroke: readColor("--line"), width: 1 },
       ticks: { show: false },
     };
     this.chart = new Chart(
@@ -103,7 +103,7 @@ export class PlotChart {
         series: [
           {},
           ...this.plot.series.map((_, index) => ({
-            stroke: color(`--plot-${(index % COLOR_COUNT) + 1}`),
+            stroke: readColor(`--plot-${(index % COLOR_COUNT) + 1}`),
             width: 1.4,
             points: { show: false },
             // A gap is an absent value of this series, not a column that only another series has.
@@ -111,8 +111,8 @@ export class PlotChart {
           })),
         ],
         axes: [
-          { ...axis, size: 24, space: 70, values: (_, times) => times.map(formatTime) },
-          { ...axis, size: Y_AXIS_PX, values: (_, values) => values.map((value) => formatValue(value)) },
+          { ...axis, size: 24, space: 70, values: (_, times) => times.map(formatAxisTime) },
+          { ...axis, size: Y_AXIS_WIDTH_PX, values: (_, values) => values.map((value) => formatValue(value)) },
         ],
         hooks: {
           setCursor: [(chart) => this.readCursor(chart)],
@@ -147,9 +147,9 @@ export class PlotChart {
 }
 
 /** Returns the minimum and maximum of a table, with a margin; equal values are centered. */
-function rangeOf([, ...columns]: ReturnType<typeof tabulatePlot>): [number, number] {
+function computeRange([, ...pixelColumns]: ReturnType<typeof tabulatePlot>): [number, number] {
   let [low, high] = [Infinity, -Infinity];
-  for (const column of columns) {
+  for (const column of pixelColumns) {
     for (const value of column) {
       if (value === null || value === undefined) continue;
       if (value < low) low = value;
@@ -162,8 +162,8 @@ function rangeOf([, ...columns]: ReturnType<typeof tabulatePlot>): [number, numb
 }
 
 /** Returns the label of a time on the axis: the time of day, or seconds if it is not a calendar time. */
-function formatTime(time: number): string {
-  if (time < MIN_CALENDAR_TIME) return `${Number(time.toFixed(3))} s`;
+function formatAxisTime(time: number): string {
+  if (time < MIN_CALENDAR_TIME_S) return `${Number(time.toFixed(3))} s`;
   const date = new Date(time * 1000);
   const parts = [date.getHours(), date.getMinutes(), date.getSeconds()].map((field) => String(field).padStart(2, "0"));
   const fraction = Math.round((time % 1) * 1000) / 1000;

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Plot, PlotsState } from "../../state/monitor/plots";
 import type { TimeSource } from "../../state/monitor/series-buffer";
 import type { TopicsState } from "../../state/monitor/topics";
@@ -8,7 +8,7 @@ import { createSelect } from "../../widgets/controls";
 import type { Panel } from "../panel";
 import { PlotBox } from "./plot-box";
 
-const WINDOWS = [5, 10, 30, 60, 120, 300, 600];
+const WINDOW_LENGTHS_S = [5, 10, 30, 60, 120, 300, 600];
 
 /** Plots of numeric fields of any topic. */
 export class PlotPanel implements Panel {
@@ -16,35 +16,35 @@ export class PlotPanel implements Panel {
   readonly icon = "plot";
   readonly element: HTMLElement;
   private readonly list = h("div", { class: "plots" });
-  private readonly boxes = new Map<Plot, PlotBox>();
-  private readonly pause: HTMLButtonElement;
-  private readonly seconds: HTMLSelectElement;
-  private readonly source: HTMLSelectElement;
+  private readonly plotBoxes = new Map<Plot, PlotBox>();
+  private readonly pauseButton: HTMLButtonElement;
+  private readonly windowSelect: HTMLSelectElement;
+  private readonly sourceSelect: HTMLSelectElement;
 
   constructor(
     private readonly state: PlotsState,
     private readonly topics: TopicsState,
   ) {
     const texts = strings.monitor.plot;
-    this.pause = button(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
-    const seconds = WINDOWS.map((count) => [String(count), texts.seconds(count)] as const);
-    this.seconds = createSelect(texts.windowHint, seconds, (count) => state.setSeconds(Number(count)));
-    const sources: [TimeSource, string][] = [
+    this.pauseButton = createButton(texts.pauseHint, () => state.setPaused(!state.isPaused), "tool", strings.monitor.pause);
+    const windowOptions = WINDOW_LENGTHS_S.map((count) => [String(count), texts.seconds(count)] as const);
+    this.windowSelect = createSelect(texts.windowHint, windowOptions, (count) => state.setSeconds(Number(count)));
+    const sourceOptions: [TimeSource, string][] = [
       ["received", texts.sources.received],
       ["stamp", texts.sources.stamp],
     ];
-    this.source = createSelect(texts.sourceHint, sources, (source) => state.setSource(source));
-    const bar = h(
+    this.sourceSelect = createSelect(texts.sourceHint, sourceOptions, (source) => state.setSource(source));
+    const toolbar = h(
       "div",
       { class: "toolbar" },
-      button(texts.addPlotHint, () => this.add(), "tool", icon("plus"), texts.addPlot),
-      this.pause,
-      button(texts.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      createButton(texts.addPlotHint, () => this.addPlot(), "tool", createIcon("plus"), texts.addPlot),
+      this.pauseButton,
+      createButton(texts.clearHint, () => state.clear(), "tool", createIcon("clear"), strings.monitor.clear),
       h("span", { class: "spacer" }),
-      h("label", { class: "named" }, texts.window, this.seconds),
-      h("label", { class: "named" }, texts.source, this.source),
+      h("label", { class: "named" }, texts.window, this.windowSelect),
+      h("label", { class: "named" }, texts.source, this.sourceSelect),
     );
-    this.element = h("div", { class: "panel monitor" }, bar, this.list);
+    this.element = h("div", { class: "panel monitor" }, toolbar, this.list);
     state.changed.on(() => this.show());
     const draw = coalesce(() => this.draw());
     state.moved.on(draw);
@@ -62,37 +62,37 @@ export class PlotPanel implements Panel {
     this.state.setOpen(false);
   }
 
-  private add(): void {
+  private addPlot(): void {
     const plot = this.state.addPlot();
-    this.boxes.get(plot)?.openPicker();
+    this.plotBoxes.get(plot)?.openPicker();
   }
 
   private show(): void {
     const { plots, isPaused } = this.state;
-    for (const [plot, box] of this.boxes) {
+    for (const [plot, box] of this.plotBoxes) {
       if (plots.includes(plot)) {
         box.show();
         continue;
       }
       box.dispose();
       box.element.remove();
-      this.boxes.delete(plot);
+      this.plotBoxes.delete(plot);
     }
     for (const plot of plots) {
-      if (this.boxes.has(plot)) continue;
+      if (this.plotBoxes.has(plot)) continue;
       const box = new PlotBox(this.state, this.topics, plot);
-      this.boxes.set(plot, box);
+      this.plotBoxes.set(plot, box);
       this.list.append(box.element);
     }
     const texts = strings.monitor;
-    this.pause.replaceChildren(icon(isPaused ? "play" : "pause"), isPaused ? texts.resume : texts.pause);
-    this.pause.title = isPaused ? texts.plot.resumeHint : texts.plot.pauseHint;
-    this.pause.classList.toggle("on", isPaused);
-    this.seconds.value = String(this.state.seconds);
-    this.source.value = this.state.source;
+    this.pauseButton.replaceChildren(createIcon(isPaused ? "play" : "pause"), isPaused ? texts.resume : texts.pause);
+    this.pauseButton.title = isPaused ? texts.plot.resumeHint : texts.plot.pauseHint;
+    this.pauseButton.classList.toggle("on", isPaused);
+    this.windowSelect.value = String(this.state.seconds);
+    this.sourceSelect.value = this.state.source;
   }
 
   private draw(): void {
-    for (const box of this.boxes.values()) box.draw();
+    for (const box of this.plotBoxes.values()) box.draw();
   }
 }

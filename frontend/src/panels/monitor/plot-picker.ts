@@ -28,7 +28,7 @@ export class PlotPicker {
   constructor(
     private readonly plots: PlotsState,
     private readonly topics: TopicsState,
-    private readonly onChosen: (field: FieldName) => void,
+    private readonly onFieldChosen: (field: FieldName) => void,
     private readonly onClosed: () => void,
   ) {
     const texts = strings.monitor.plot;
@@ -62,7 +62,7 @@ export class PlotPicker {
 
   close(): void {
     if (this.unsubscribe.length === 0) return;
-    for (const forget of this.unsubscribe.splice(0)) forget();
+    for (const unsubscribe of this.unsubscribe.splice(0)) unsubscribe();
     this.topics.watchList(this, false);
     this.plots.requestFields(null);
     this.element.remove();
@@ -107,10 +107,12 @@ export class PlotPicker {
       const row = h("li", { role: "option" }, h("span", {}, offer.text), h("span", { class: "note" }, offer.note));
       row.id = `picker-${index}`;
       row.setAttribute("aria-selected", String(index === this.activeIndex));
-      row.addEventListener("click", () => this.choose(offer));
+      row.addEventListener("click", () => this.chooseOffer(offer));
       return row;
     });
-    const emptyText = this.requestedTopic === null ? (this.topics.isKnown ? texts.noTopics : texts.requestingTopics) : this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
+    const noTopicsText = this.topics.isKnown ? texts.noTopics : texts.requestingTopics;
+    const noFieldsText = this.fields ? (this.fields.error ?? texts.noFields) : texts.waiting;
+    const emptyText = this.requestedTopic === null ? noTopicsText : noFieldsText;
     this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, emptyText)]));
     this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.activeIndex}` : "");
     rows[this.activeIndex]?.scrollIntoView({ block: "nearest" });
@@ -120,8 +122,8 @@ export class PlotPicker {
     const lastIndex = this.offers.length - 1;
     if (event.key === "ArrowDown") this.activeIndex = Math.min(lastIndex, this.activeIndex + 1);
     else if (event.key === "ArrowUp") this.activeIndex = Math.max(0, this.activeIndex - 1);
-    else if (event.key === "Enter") this.enter();
-    else if (event.key === "Tab" && this.offers[this.activeIndex]?.isField === false) this.choose(this.offers[this.activeIndex]);
+    else if (event.key === "Enter") this.acceptTyped();
+    else if (event.key === "Tab" && this.offers[this.activeIndex]?.isField === false) this.chooseOffer(this.offers[this.activeIndex]);
     else if (event.key === "Escape") this.close();
     else {
       event.stopPropagation();
@@ -133,28 +135,28 @@ export class PlotPicker {
   }
 
   /** Accepts a field that is typed in full even if it is not offered: arrays have more elements than are listed. */
-  private enter(): void {
+  private acceptTyped(): void {
     const field = parseField(this.input.value);
     const offer = this.offers[this.activeIndex];
-    const writtenOffer = this.offers.find(({ text }) => text === this.input.value.trim());
-    if (offer && !writtenOffer) this.choose(offer);
-    else if (field) this.accept(field);
-    else if (offer) this.choose(offer);
+    const typedOffer = this.offers.find(({ text }) => text === this.input.value.trim());
+    if (offer && !typedOffer) this.chooseOffer(offer);
+    else if (field) this.acceptField(field);
+    else if (offer) this.chooseOffer(offer);
   }
 
-  private choose(offer: Offer | undefined): void {
+  private chooseOffer(offer: Offer | undefined): void {
     if (!offer) return;
     const field = offer.isField ? parseField(offer.text) : null;
     if (field) {
-      this.accept(field);
+      this.acceptField(field);
       return;
     }
     this.input.value = `${offer.text}.`;
     this.onInput();
   }
 
-  private accept(field: FieldName): void {
-    this.onChosen(field);
+  private acceptField(field: FieldName): void {
+    this.onFieldChosen(field);
     this.close();
   }
 }

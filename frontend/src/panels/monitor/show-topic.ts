@@ -7,8 +7,8 @@ import { showNotice } from "../../widgets/dialog";
 export function showTopic(session: Session, topic: string): void {
   const { configuration, displays } = session;
   if (displays.displays.some(({ isEnabled, rows }) => isEnabled && rows.text("", "Topic") === topic)) return;
-  const stop = configuration.choicesArrived.on(() => {
-    stop();
+  const unsubscribe = configuration.choicesArrived.on(() => {
+    unsubscribe();
     const choice = configuration.choices?.topics.find((candidate) => candidate.topic === topic && candidate.classes.length > 0);
     const cls = choice ? findObviousDisplay(choice) : null;
     if (cls === null) showNotice(topic, strings.displays.topicNotShown);

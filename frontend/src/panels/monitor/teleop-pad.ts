@@ -1,9 +1,9 @@
 import { h } from "../../dom";
 import type { TeleopState } from "../../state/monitor/teleop";
-import { motionOfKey, STILL, sumOf, type Motion } from "../../state/monitor/teleop-keys";
+import { motionOfKey, NO_MOTION, sumMotions, type Motion } from "../../state/monitor/teleop-keys";
 import { strings } from "../../strings";
 
-const FASTER = 1.1;
+const SPEED_FACTOR = 1.1;
 
 /** The square for driving: up is forward, left turns to the left. Keys drive while it has the focus. */
 export class TeleopPad {
@@ -23,12 +23,12 @@ export class TeleopPad {
     const { element } = this;
     element.addEventListener("pointerdown", (event) => this.onPointerDown(event));
     element.addEventListener("pointermove", (event) => this.onPointerMove(event));
-    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-      element.addEventListener(end, () => this.onPointerUp());
+    for (const endEvent of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      element.addEventListener(endEvent, () => this.onPointerUp());
     }
     element.addEventListener("keydown", (event) => this.onKeyDown(event));
     element.addEventListener("keyup", (event) => {
-      if (this.heldKeys.delete(event.code)) this.moveKeys();
+      if (this.heldKeys.delete(event.code)) this.updateKeyMotion();
     });
     // Losing the focus must stop the robot.
     element.addEventListener("blur", () => this.release());
@@ -49,10 +49,10 @@ export class TeleopPad {
 
   private show(): void {
     const { x, turn, y } = this.state.motion;
-    const side = turn !== 0 ? turn : y;
-    this.knob.style.left = `${50 - 42 * side}%`;
+    const sideways = turn !== 0 ? turn : y;
+    this.knob.style.left = `${50 - 42 * sideways}%`;
     this.knob.style.top = `${50 - 42 * x}%`;
-    this.element.classList.toggle("driving", x !== 0 || side !== 0);
+    this.element.classList.toggle("driving", x !== 0 || sideways !== 0);
   }
 
   private onPointerDown(event: PointerEvent): void {
@@ -66,20 +66,20 @@ export class TeleopPad {
 
   private onPointerMove(event: PointerEvent): void {
     if (event.pointerId !== this.pointer) return;
-    const box = this.element.getBoundingClientRect();
-    const percentOf = (value: number, start: number, length: number): number =>
+    const padRect = this.element.getBoundingClientRect();
+    const deflectionAt = (value: number, start: number, length: number): number =>
       Math.min(1, Math.max(-1, (1 - (2 * (value - start)) / length) / 0.84));
-    const forward = percentOf(event.clientY, box.top, box.height);
-    const left = percentOf(event.clientX, box.left, box.width);
+    const forward = deflectionAt(event.clientY, padRect.top, padRect.height);
+    const left = deflectionAt(event.clientX, padRect.left, padRect.width);
     // Leave a dead zone in the middle: pressing there must not move the robot yet.
-    const motion = { ...STILL, x: applyDeadZone(forward), [event.shiftKey ? "y" : "turn"]: applyDeadZone(left) };
+    const motion = { ...NO_MOTION, x: applyDeadZone(forward), [event.shiftKey ? "y" : "turn"]: applyDeadZone(left) };
     this.state.move("pad", motion);
   }
 
   private onPointerUp(): void {
     if (this.pointer === null) return;
     this.pointer = null;
-    this.state.move("pad", STILL);
+    this.state.move("pad", NO_MOTION);
   }
 
   private onKeyDown(event: KeyboardEvent): void {
@@ -88,24 +88,24 @@ export class TeleopPad {
     if (motion) {
       if (!event.repeat) {
         this.heldKeys.set(event.code, motion);
-        this.moveKeys();
+        this.updateKeyMotion();
       }
     } else if (event.key === " " || event.key === "k" || event.key === "K") this.release();
-    else if (event.key === "q" || event.key === "Q") this.scale(FASTER);
-    else if (event.key === "z" || event.key === "Z") this.scale(1 / FASTER);
+    else if (event.key === "q" || event.key === "Q") this.scaleSpeeds(SPEED_FACTOR);
+    else if (event.key === "z" || event.key === "Z") this.scaleSpeeds(1 / SPEED_FACTOR);
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
 
-  private moveKeys(): void {
-    this.state.move("keys", sumOf(this.heldKeys.values()));
+  private updateKeyMotion(): void {
+    this.state.move("keys", sumMotions(this.heldKeys.values()));
   }
 
-  private scale(factor: number): void {
+  private scaleSpeeds(factor: number): void {
     const { linear, angular } = this.state.settings;
-    const scale = (value: number): number => Number((value * factor).toPrecision(3));
-    this.state.configure({ linear: scale(linear), angular: scale(angular) });
+    const scaleSpeed = (value: number): number => Number((value * factor).toPrecision(3));
+    this.state.configure({ linear: scaleSpeed(linear), angular: scaleSpeed(angular) });
   }
 }
 

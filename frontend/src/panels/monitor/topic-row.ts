@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
 import { formatBandwidth, formatClock, formatRate } from "../../state/monitor/figure-text";
 import { strings } from "../../strings";
@@ -16,9 +16,9 @@ export interface TopicRowEvents {
 
 /** A topic of the monitor, and while it is open, its last message below it. */
 export class TopicLine {
-  readonly head: HTMLTableRowElement;
-  readonly body: HTMLTableRowElement;
-  private readonly box = h("input", { class: "check" });
+  readonly mainRow: HTMLTableRowElement;
+  readonly messageRow: HTMLTableRowElement;
+  private readonly measureBox = h("input", { class: "check" });
   private readonly expander: HTMLButtonElement;
   private readonly cells: Record<"type" | "publishers" | "subscribers" | "rate" | "bandwidth", HTMLElement>;
   private readonly receivedNote = h("div", { class: "note" }, strings.monitor.topics.waiting);
@@ -29,10 +29,10 @@ export class TopicLine {
     events: TopicRowEvents,
   ) {
     const texts = strings.monitor.topics;
-    this.box.type = "checkbox";
-    this.box.setAttribute("aria-label", texts.measure(name));
-    this.box.addEventListener("change", () => events.onMeasured(name, this.box.checked));
-    this.expander = button(texts.open(name), () => events.onOpened(name, this.body.hidden === true), "expander", icon("chevron"));
+    this.measureBox.type = "checkbox";
+    this.measureBox.setAttribute("aria-label", texts.measure(name));
+    this.measureBox.addEventListener("change", () => events.onMeasured(name, this.measureBox.checked));
+    this.expander = createButton(texts.open(name), () => events.onOpened(name, this.messageRow.hidden === true), "expander", createIcon("chevron"));
     this.tree = new MessageTree((path) => events.onPlotted(name, path));
     this.cells = {
       type: h("td", { class: "note" }),
@@ -41,13 +41,13 @@ export class TopicLine {
       rate: h("td", { class: "numeric" }),
       bandwidth: h("td", { class: "numeric" }),
     };
-    const label = button(texts.show, () => events.onShown(name), "text-link", name);
-    const title = h("span", { class: "topic-title" }, this.box, this.expander, label);
-    this.head = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
+    const nameButton = createButton(texts.show, () => events.onShown(name), "text-link", name);
+    const title = h("span", { class: "topic-title" }, this.measureBox, this.expander, nameButton);
+    this.mainRow = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
     const cell = h("td", {}, this.receivedNote, this.tree.element);
     cell.colSpan = 6;
-    this.body = h("tr", { class: "topic-message" }, cell);
-    this.body.hidden = true;
+    this.messageRow = h("tr", { class: "topic-message" }, cell);
+    this.messageRow.hidden = true;
   }
 
   show({ types, publishers, subscribers }: TopicRow): void {
@@ -60,9 +60,9 @@ export class TopicLine {
 
   /** Sets the tick box and the expander. */
   setState(isMeasured: boolean, isOpen: boolean): void {
-    this.box.checked = isMeasured || isOpen;
+    this.measureBox.checked = isMeasured || isOpen;
     this.expander.setAttribute("aria-expanded", String(isOpen));
-    this.body.hidden = !isOpen;
+    this.messageRow.hidden = !isOpen;
   }
 
   showTraffic(traffic: TopicTraffic | undefined): void {
@@ -70,7 +70,7 @@ export class TopicLine {
     const error = traffic?.error ?? null;
     rate.textContent = typeof traffic?.rate !== "number" ? "" : strings.monitor.topics.hertz(formatRate(traffic.rate));
     bandwidth.textContent = typeof traffic?.bandwidth !== "number" ? "" : formatBandwidth(traffic.bandwidth);
-    this.head.classList.toggle("wrong", error !== null);
+    this.mainRow.classList.toggle("wrong", error !== null);
     if (error !== null) this.receivedNote.textContent = error;
   }
 

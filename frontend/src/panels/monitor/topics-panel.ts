@@ -12,8 +12,8 @@ export class TopicsPanel implements Panel {
   readonly id = "topics";
   readonly icon = "topics";
   readonly element: HTMLElement;
-  private readonly body = h("tbody");
-  private readonly empty = h("p", { class: "empty" }, strings.monitor.topics.none);
+  private readonly tableBody = h("tbody");
+  private readonly emptyNote = h("p", { class: "empty" }, strings.monitor.topics.none);
   private readonly lines = new Map<string, TopicLine>();
   private readonly measuredTopics = new Set<string>();
   private readonly unfoldedTopics = new Set<string>();
@@ -34,8 +34,8 @@ export class TopicsPanel implements Panel {
       this.showsHidden = isTicked;
       this.show();
     });
-    const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), hiddenBox);
-    const createHead = (text: string, hint = text, isNumeric = true): HTMLElement =>
+    const toolbar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), hiddenBox);
+    const createHeading = (text: string, hint = text, isNumeric = true): HTMLElement =>
       h("th", { class: isNumeric ? "numeric" : "", title: hint }, text);
     const table = h(
       "table",
@@ -46,20 +46,20 @@ export class TopicsPanel implements Panel {
         h(
           "tr",
           {},
-          createHead(texts.name, texts.measureHint, false),
-          createHead(texts.type, texts.type, false),
-          createHead(texts.publishers, texts.publishersHint),
-          createHead(texts.subscribers, texts.subscribersHint),
-          createHead(texts.rate),
-          createHead(texts.bandwidth),
+          createHeading(texts.name, texts.measureHint, false),
+          createHeading(texts.type, texts.type, false),
+          createHeading(texts.publishers, texts.publishersHint),
+          createHeading(texts.subscribers, texts.subscribersHint),
+          createHeading(texts.rate),
+          createHeading(texts.bandwidth),
         ),
       ),
-      this.body,
+      this.tableBody,
     );
-    this.element = h("div", { class: "panel monitor" }, bar, h("div", { class: "scroll" }, table, this.empty));
+    this.element = h("div", { class: "panel monitor" }, toolbar, h("div", { class: "scroll" }, table, this.emptyNote));
     this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     state.listChanged.on(() => this.show());
-    state.figuresChanged.on(() => this.showFigures());
+    state.figuresChanged.on(() => this.showTraffic());
     state.messageArrived.on((message) => this.lines.get(message.topic)?.showMessage(message));
     onVisibilityChange(this.element, (isVisible) => {
       state.watchList(this, isVisible);
@@ -70,14 +70,14 @@ export class TopicsPanel implements Panel {
   private show(): void {
     const shownTopics = this.state.topics.filter((topic) => this.isShown(topic));
     const rows = shownTopics.flatMap((topic) => {
-      const line = this.lineFor(topic.name);
+      const line = this.findOrCreateLine(topic.name);
       line.show(topic);
       line.setState(this.measuredTopics.has(topic.name), this.unfoldedTopics.has(topic.name));
-      return [line.head, line.body];
+      return [line.mainRow, line.messageRow];
     });
-    const isUnchanged = rows.length === this.body.childElementCount && rows.every((row, index) => row === this.body.children[index]);
-    if (!isUnchanged) this.body.replaceChildren(...rows);
-    this.empty.hidden = rows.length > 0;
+    const isUnchanged = rows.length === this.tableBody.childElementCount && rows.every((row, index) => row === this.tableBody.children[index]);
+    if (!isUnchanged) this.tableBody.replaceChildren(...rows);
+    this.emptyNote.hidden = rows.length > 0;
   }
 
   private isShown({ name }: TopicRow): boolean {
@@ -85,7 +85,7 @@ export class TopicsPanel implements Panel {
     return this.showsHidden || !name.split("/").some((part) => part.startsWith("_"));
   }
 
-  private lineFor(name: string): TopicLine {
+  private findOrCreateLine(name: string): TopicLine {
     const existing = this.lines.get(name);
     if (existing) return existing;
     const line = new TopicLine(name, {
@@ -110,17 +110,17 @@ export class TopicsPanel implements Panel {
     this.show();
   }
 
-  private showFigures(): void {
+  private showTraffic(): void {
     for (const [name, line] of this.lines) line.showTraffic(this.state.traffic.get(name));
   }
 
   /** Moves to the previous or next topic with the arrow keys. */
   private onKeyDown(event: KeyboardEvent): void {
     if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
-    const stops = [...this.body.querySelectorAll<HTMLElement>(":scope > tr[data-topic] .expander")];
-    const index = stops.indexOf(document.activeElement as HTMLElement);
+    const expanders = [...this.tableBody.querySelectorAll<HTMLElement>(":scope > tr[data-topic] .expander")];
+    const index = expanders.indexOf(document.activeElement as HTMLElement);
     if (index < 0) return;
-    stops[index + (event.key === "ArrowDown" ? 1 : -1)]?.focus();
+    expanders[index + (event.key === "ArrowDown" ? 1 : -1)]?.focus();
     event.preventDefault();
   }
 }

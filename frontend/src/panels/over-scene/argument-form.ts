@@ -58,8 +58,8 @@ export class ArgumentFormCard {
 
   /** Sends the values. Empty fields are omitted: the file then uses its default, or reports the missing argument. */
   private submit(): void {
-    const argumentsGiven = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
-    this.connection.send({ type: "set_arguments", values: Object.fromEntries(argumentsGiven) });
+    const givenValues = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
+    this.connection.send({ type: "set_arguments", values: Object.fromEntries(givenValues) });
   }
 }
 

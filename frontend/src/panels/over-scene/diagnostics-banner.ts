@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon, LEVEL_ICONS } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon, LEVEL_ICONS } from "../../icons";
 import type { DiagnosticItem } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
@@ -28,7 +28,7 @@ export class DiagnosticsBanner {
 
   constructor(
     private readonly session: Session,
-    private readonly showAll: () => void,
+    private readonly showDiagnostics: () => void,
   ) {
     session.diagnosticsChanged.on(() => this.update());
     this.update();
@@ -51,7 +51,7 @@ export class DiagnosticsBanner {
     const place = item.file === null ? "" : formatPlace(shortenPath(item.file, 2), item.line, item.column);
     const furtherErrors = errors.length > 1 ? ` ${texts.more(errors.length - 1)}` : "";
     this.element.replaceChildren(
-      icon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
+      createIcon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
       h(
         "div",
         { class: "banner-text" },
@@ -60,10 +60,10 @@ export class DiagnosticsBanner {
         isError && this.isRobotKept(item) ? h("span", {}, texts.lastGood) : null,
       ),
       ...(item.code === SLOW_CODE && this.imageDisplays.length > 0
-        ? [button(texts.withoutImages, () => this.switchOffImages(), "tool", texts.withoutImages)]
+        ? [createButton(texts.withoutImages, () => this.switchOffImages(), "tool", texts.withoutImages)]
         : []),
-      button(texts.show, this.showAll, "tool", texts.show),
-      ...(isError ? [] : [button(texts.close, () => this.close(item), "tool", icon("close"))]),
+      createButton(texts.show, this.showDiagnostics, "tool", texts.show),
+      ...(isError ? [] : [createButton(texts.close, () => this.close(item), "tool", createIcon("close"))]),
     );
   }
 

@@ -1,5 +1,5 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { TopicChoice } from "../../protocol";
 import { findLargestRoot } from "../../state/frame-tree";
 import { findObviousDisplay } from "../../state/obvious-display";
@@ -7,7 +7,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
 const ROBOT_MODEL = "rviz_default_plugins/RobotModel";
-/** How long (ms) the notice waits for the frame: localization takes a moment to publish it. */
+/** How long (ms) the notice waits for the frame: localization publishes it only after its start. */
 const NOTICE_DELAY_MS = 3000;
 
 /**
@@ -57,11 +57,11 @@ export class FrameNotice {
     const texts = strings.scene.frame;
     const root = findLargestRoot(this.session.frames);
     if (this.reportedFrame === null || root === null) return;
-    const closeButton = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
+    const closeButton = createButton(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", createIcon("close"));
     const { robotTopic } = this;
     const addsRobot = robotTopic !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
     const label = addsRobot ? texts.useWithRobot(root) : texts.use(root);
-    const useButton = button(label, () => this.useFrame(root, addsRobot ? robotTopic.topic : null), "tool framed primary", label);
+    const useButton = createButton(label, () => this.useFrame(root, addsRobot ? robotTopic.topic : null), "tool framed primary", label);
     this.element.replaceChildren(
       h("header", {}, h("strong", {}, texts.missing(this.reportedFrame)), closeButton),
       h("div", {}, texts.hint),

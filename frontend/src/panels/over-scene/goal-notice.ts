@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { NavigationState } from "../../state/monitor/navigation";
 import { strings } from "../../strings";
 
@@ -13,7 +13,7 @@ export class GoalNotice {
   constructor(navigation: NavigationState) {
     const texts = strings.monitor.navigation;
     const reason = h("div");
-    const closeButton = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
+    const closeButton = createButton(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", createIcon("close"));
     this.element.append(h("header", {}, h("strong", {}, texts.failed), closeButton), reason);
     this.element.hidden = true;
     navigation.outcomeChanged.on((outcome) => {

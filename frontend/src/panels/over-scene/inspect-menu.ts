@@ -1,13 +1,13 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
-import type { Inspected } from "../../state/inspect";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
+import type { InspectedProperties } from "../../state/inspect";
 import { formatGeneral } from "../../state/number-text";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { closeOutside } from "../../widgets/popover";
+import { closeOnOutsideClick } from "../../widgets/popover";
 import { getCurrentModel } from "../description/current-model";
 
-const CHOICES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
+const PROPERTIES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
 /** The ends of the slider are powers of two: a quarter of the size, and four times the size. */
 const MAX_SCALE_EXPONENT = 2;
 
@@ -16,10 +16,10 @@ export class InspectMenu {
   readonly element = h("div", { class: "inspect" });
   private readonly card = h("div", { class: "inspect-card", role: "group", aria: { label: strings.description.inspect.button } });
   private readonly facts = h("div", { class: "inspect-facts" });
-  private readonly boxes = new Map<keyof Inspected, HTMLInputElement>();
-  private readonly depth = h("input", { class: "slider" });
+  private readonly checkBoxes = new Map<keyof InspectedProperties, HTMLInputElement>();
+  private readonly depthSlider = h("input", { class: "slider" });
   private readonly depthText = h("output");
-  private readonly scale = h("input", { class: "slider" });
+  private readonly scaleSlider = h("input", { class: "slider" });
   private readonly openButton: HTMLButtonElement;
   private release: () => void = () => undefined;
 
@@ -29,8 +29,8 @@ export class InspectMenu {
     private readonly onResized: () => void,
   ) {
     const texts = strings.description.inspect;
-    this.openButton = button(texts.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), texts.button);
-    this.card.append(...CHOICES.map((choice) => this.createChoice(choice)), this.createDepthRow(), this.createScaleRow(), this.facts);
+    this.openButton = createButton(texts.hint, () => this.toggle(this.card.hidden !== false), "tool", createIcon("inspect"), texts.button);
+    this.card.append(...PROPERTIES.map((choice) => this.createPropertyBox(choice)), this.createDepthRow(), this.createScaleRow(), this.facts);
     this.element.append(this.openButton, this.card);
     const { inspect, description, robotChanged } = session;
     const show = coalesce(() => this.show());
@@ -44,7 +44,7 @@ export class InspectMenu {
 
   private toggle(isOpen: boolean): void {
     this.release();
-    this.release = isOpen ? closeOutside([this.element], (returnsFocus) => this.onClosed(returnsFocus)) : () => undefined;
+    this.release = isOpen ? closeOnOutsideClick([this.element], (returnsFocus) => this.onClosed(returnsFocus)) : () => undefined;
     this.card.hidden = !isOpen;
     this.openButton.setAttribute("aria-expanded", String(isOpen));
     this.onResized();
@@ -55,53 +55,53 @@ export class InspectMenu {
     if (returnsFocus) this.openButton.focus();
   }
 
-  private createChoice(property: keyof Inspected): HTMLElement {
+  private createPropertyBox(property: keyof InspectedProperties): HTMLElement {
     const texts = strings.description.inspect;
     const box = h("input", { class: "check" });
     box.type = "checkbox";
     box.addEventListener("change", () => this.session.inspect.set(property, box.checked));
-    this.boxes.set(property, box);
+    this.checkBoxes.set(property, box);
     const label = h("label", { title: texts[`${property}Hint`], data: { inspect: property } }, box, texts[property]);
     return label;
   }
 
   private createDepthRow(): HTMLElement {
     const { inspect } = this.session;
-    this.depth.type = "range";
-    this.depth.min = "0";
-    this.depth.addEventListener("input", () => {
-      const level = Number(this.depth.value);
-      inspect.maxDepth = level >= Number(this.depth.max) ? null : level;
+    this.depthSlider.type = "range";
+    this.depthSlider.min = "0";
+    this.depthSlider.addEventListener("input", () => {
+      const level = Number(this.depthSlider.value);
+      inspect.maxDepth = level >= Number(this.depthSlider.max) ? null : level;
     });
-    return h("label", { class: "inspect-depth" }, strings.description.inspect.depth, this.depth, this.depthText);
+    return h("label", { class: "inspect-depth" }, strings.description.inspect.depth, this.depthSlider, this.depthText);
   }
 
   private createScaleRow(): HTMLElement {
     const { inspect } = this.session;
-    this.scale.type = "range";
-    this.scale.min = String(-MAX_SCALE_EXPONENT);
-    this.scale.max = String(MAX_SCALE_EXPONENT);
-    this.scale.step = "0.25";
-    this.scale.addEventListener("input", () => (inspect.scale = 2 ** Number(this.scale.value)));
-    return h("label", {}, strings.description.inspect.scale, this.scale);
+    this.scaleSlider.type = "range";
+    this.scaleSlider.min = String(-MAX_SCALE_EXPONENT);
+    this.scaleSlider.max = String(MAX_SCALE_EXPONENT);
+    this.scaleSlider.step = "0.25";
+    this.scaleSlider.addEventListener("input", () => (inspect.scale = 2 ** Number(this.scaleSlider.value)));
+    return h("label", {}, strings.description.inspect.scale, this.scaleSlider);
   }
 
   private show(): void {
     const { inspect } = this.session;
     const model = getCurrentModel(this.session);
-    for (const [property, box] of this.boxes) box.checked = inspect.current[property];
+    for (const [property, box] of this.checkBoxes) box.checked = inspect.current[property];
     this.openButton.classList.toggle("on", inspect.isActive);
     const maxDepth = model?.maxDepth ?? 0;
-    this.depth.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
-    this.depth.max = String(maxDepth);
-    this.depth.value = String(inspect.maxDepth ?? maxDepth);
-    this.depthText.textContent = this.depth.value;
-    this.scale.value = String(Math.log2(inspect.scale));
-    for (const slider of [this.depth, this.scale]) {
+    this.depthSlider.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
+    this.depthSlider.max = String(maxDepth);
+    this.depthSlider.value = String(inspect.maxDepth ?? maxDepth);
+    this.depthText.textContent = this.depthSlider.value;
+    this.scaleSlider.value = String(Math.log2(inspect.scale));
+    for (const slider of [this.depthSlider, this.scaleSlider]) {
       const [min, max] = [Number(slider.min), Number(slider.max)];
       const fraction = max > min ? (Number(slider.value) - min) / (max - min) : 1;
       slider.style.setProperty("--part", String(fraction));
-      slider.style.setProperty("--zero", slider === this.scale ? "0.5" : "0");
+      slider.style.setProperty("--zero", slider === this.scaleSlider ? "0.5" : "0");
     }
     this.showFacts();
   }
@@ -136,8 +136,8 @@ export class InspectMenu {
     const hasNoInertia = links.size === 0 && [...model.links.values()].every(({ inertia }) => inertia === null);
     if (hasNoInertia) return [h("div", { class: "missing" }, texts.noInertials)];
     const rows = findings.map(({ link, code, message, hint }) => {
-      const name = { display: model.display, kind: "link" as const, name: link };
-      const row = button(hint || message, () => this.session.focus.select(name), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));
+      const linkElement = { display: model.display, kind: "link" as const, name: link };
+      const row = createButton(hint || message, () => this.session.focus.select(linkElement), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));
       return h("li", { data: { link } }, row);
     });
     return [

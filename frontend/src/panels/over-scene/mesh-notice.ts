@@ -4,9 +4,9 @@ import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
 
 /** The maximum number of files listed; the others are counted. */
-const MAX_LINES = 4;
+const MAX_LISTED_FILES = 4;
 
-/** The notice over the scene while mesh files take longer than a moment: the files and their progress. */
+/** The notice over the scene while mesh files take noticeably long to load: the files and their progress. */
 export class MeshNotice {
   readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "meshes" } });
 
@@ -19,8 +19,8 @@ export class MeshNotice {
     const texts = strings.meshes.progress;
     const { loads } = this.progress;
     this.element.hidden = loads.length === 0;
-    const lines = loads.slice(0, MAX_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${formatProgress(load)}`));
-    const furtherFiles = loads.length > MAX_LINES ? h("div", {}, texts.more(String(loads.length - MAX_LINES))) : "";
+    const lines = loads.slice(0, MAX_LISTED_FILES).map((load) => h("div", {}, h("b", {}, load.name), ` ${formatProgress(load)}`));
+    const furtherFiles = loads.length > MAX_LISTED_FILES ? h("div", {}, texts.more(String(loads.length - MAX_LISTED_FILES))) : "";
     this.element.replaceChildren(h("strong", {}, texts.title), ...lines, furtherFiles);
   }
 }

@@ -2,19 +2,19 @@ import { h } from "../../dom";
 import type { Session } from "../../state/session";
 import type { ViewState } from "../../state/view";
 
-const SIZE = 64;
-const ARM = 22;
-const SVG = "http://www.w3.org/2000/svg";
+const SIZE_PX = 64;
+const ARM_LENGTH_PX = 22;
+const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
 const AXES = ["x", "y", "z"] as const;
 
 /** A small cross of axes that shows the orientation of the camera in the fixed frame. */
 export class OrientationSign {
   readonly element = h("div", { class: "orientation", aria: { hidden: "true" } });
-  private readonly svg = document.createElementNS(SVG, "svg");
+  private readonly svg = document.createElementNS(SVG_NAMESPACE, "svg");
   private readonly arms = AXES.map((name) => {
-    const arm = document.createElementNS(SVG, "g");
+    const arm = document.createElementNS(SVG_NAMESPACE, "g");
     arm.setAttribute("class", `arm-${name}`);
-    const [line, label] = [document.createElementNS(SVG, "line"), document.createElementNS(SVG, "text")];
+    const [line, label] = [document.createElementNS(SVG_NAMESPACE, "line"), document.createElementNS(SVG_NAMESPACE, "text")];
     label.textContent = name;
     arm.append(line, label);
     return { arm, line, label };
@@ -24,7 +24,7 @@ export class OrientationSign {
 
   constructor({ view, frames }: Session) {
     this.view = view;
-    this.svg.setAttribute("viewBox", `${-SIZE / 2} ${-SIZE / 2} ${SIZE} ${SIZE}`);
+    this.svg.setAttribute("viewBox", `${-SIZE_PX / 2} ${-SIZE_PX / 2} ${SIZE_PX} ${SIZE_PX}`);
     this.svg.append(...this.arms.map(({ arm }) => arm));
     this.element.append(this.svg);
     view.changed.on(() => this.update());
@@ -38,10 +38,10 @@ export class OrientationSign {
     const { right, up, back } = this.view.camera;
     const depths = this.arms.map(({ arm, line, label }, i) => {
       const [x, y, depth] = [right[i] ?? 0, -(up[i] ?? 0), back[i] ?? 0];
-      line.setAttribute("x2", String(x * ARM));
-      line.setAttribute("y2", String(y * ARM));
-      label.setAttribute("x", String(x * (ARM + 6)));
-      label.setAttribute("y", String(y * (ARM + 6)));
+      line.setAttribute("x2", String(x * ARM_LENGTH_PX));
+      line.setAttribute("y2", String(y * ARM_LENGTH_PX));
+      label.setAttribute("x", String(x * (ARM_LENGTH_PX + 6)));
+      label.setAttribute("y", String(y * (ARM_LENGTH_PX + 6)));
       return { arm, depth };
     });
     // Draw arms that point towards the viewer last.

@@ -4,7 +4,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 
 /** How long the notice is shown, ms. */
-const NOTICE_MS = 15_000;
+const NOTICE_DURATION_MS = 15_000;
 
 /**
  * The notice over the scene for a while after one node's description replaced another's, with the text of the display's
@@ -35,6 +35,6 @@ export class OwnerNotice {
     this.element.replaceChildren(h("strong", {}, strings.displays.otherDescription), h("div", {}, h("b", {}, name), ` ${text}`));
     this.element.hidden = false;
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => (this.element.hidden = true), NOTICE_MS);
+    this.timer = setTimeout(() => (this.element.hidden = true), NOTICE_DURATION_MS);
   }
 }

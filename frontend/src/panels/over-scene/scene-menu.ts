@@ -6,9 +6,9 @@ import { openMenu } from "../../widgets/menu";
 /**
  * Opens context menus of objects in the scene at the requested positions; a choice with submenu entries opens those.
  */
-export function bindSceneMenus(box: HTMLElement, menuRequested: Signal<SceneMenu>): void {
+export function bindSceneMenus(container: HTMLElement, menuRequested: Signal<SceneMenu>): void {
   const anchor = h("div", { class: "scene-menu-anchor" });
-  box.append(anchor);
+  container.append(anchor);
   const open = (choices: readonly MenuChoice[]): void => {
     openMenu(
       anchor,

@@ -31,17 +31,17 @@ export class ScenePanel implements Panel {
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   /** The scene and its overlays, which full screen shows. */
   readonly box: HTMLElement;
-  private readonly column = new CardColumn();
+  private readonly cardColumn = new CardColumn();
   private readonly notices = h("div", { class: "notices" });
-  private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
+  private readonly waitingNote = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
   constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
     const toolbar = new Toolbar(session.tools, fit, showKeys, createTalkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const connectionNotice = new ConnectionNotice(session.connection);
-    const card = new SelectionCard(session, this.column, () => session.editing.editRequested.emit());
-    const inspect = new InspectMenu(session, this.column.onCardToggled);
-    const sign = new OrientationSign(session);
+    const selectionCard = new SelectionCard(session, this.cardColumn, () => session.editing.editRequested.emit());
+    const inspect = new InspectMenu(session, this.cardColumn.onCardToggled);
+    const orientationSign = new OrientationSign(session);
     const simulationBar = new SimulationBar(session.simulation, session.modeling, commands);
     const form = new ArgumentFormCard(session.connection);
     this.notices.append(simulationBar.element, connectionNotice.element, banner.element, form.element);
@@ -54,19 +54,19 @@ export class ScenePanel implements Panel {
       new MeshNotice(session.meshProgress),
       new VoiceNotice(session.voice, session.enrolledWords),
     ];
-    this.column.element.append(inspect.element, card.element, ...notices.map((notice) => notice.element));
+    this.cardColumn.element.append(inspect.element, selectionCard.element, ...notices.map((notice) => notice.element));
     this.box = h(
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, this.notices, this.column.element, this.waiting, sign.element),
+      h("div", { class: "overlay" }, this.notices, this.cardColumn.element, this.waitingNote, orientationSign.element),
     );
     bindSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
       const isRobotExpected = session.displays.displays.some(({ cls, isEnabled }) => isEnabled && cls.endsWith("/RobotModel"));
       // If a description has an error, the banner explains why no robot appears.
-      this.waiting.hidden = session.robot !== null || !isRobotExpected || banner.hasError;
+      this.waitingNote.hidden = session.robot !== null || !isRobotExpected || banner.hasError;
     };
     session.diagnosticsChanged.on(update);
     session.robotChanged.on(update);
@@ -76,7 +76,7 @@ export class ScenePanel implements Panel {
 
   /** Connects the cards with the scene below them. */
   connectScene(scene: CoveredScene): void {
-    this.column.connectScene(scene);
+    this.cardColumn.connectScene(scene);
     new ResizeObserver(() => scene.avoidNotices(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
   }
 }

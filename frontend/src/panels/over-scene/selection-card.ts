@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { LinkScene, LinkProvenance } from "../../protocol";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
@@ -14,12 +14,12 @@ export class SelectionCard {
 
   /**
    * @param column - the column of the card. A card that would cover a robot is folded until the user unfolds it.
-   * @param edit - starts editing the link; null if links cannot be edited.
+   * @param startEditing - starts editing the link; null if links cannot be edited.
    */
   constructor(
     private readonly session: Session,
     private readonly column: CardColumn,
-    private readonly edit: (() => void) | null = null,
+    private readonly startEditing: (() => void) | null = null,
   ) {
     session.selection.changed.on(() => this.update());
     session.provenanceAnswered.on((provenance) => this.show(provenance));
@@ -39,10 +39,10 @@ export class SelectionCard {
     if (wasHidden) this.isFolded = this.column.isOverRobots;
     const { link } = selectedLink;
     const texts = strings.selection;
-    const clear = button(texts.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
-    const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
+    const clearButton = createButton(texts.clear, () => this.session.selection.select(null), "tool bare", createIcon("close"));
+    const editButton = this.startEditing && createButton(strings.editing.editHint, this.startEditing, "tool bare edit-link", createIcon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), edit, this.createFoldButton(), clear),
+      h("header", {}, createIcon("cube"), h("strong", { title: texts.title }, link.name), h("span", { class: "spacer" }), editButton, this.createFoldButton(), clearButton),
       ...createDetails(link),
       createPlace(link, (file, line) => this.session.description.placeRequested.emit({ file, line })),
       ...createTrail(link),
@@ -57,17 +57,17 @@ export class SelectionCard {
       show(!this.isFolded);
       this.column.onCardToggled();
     };
-    const fold: HTMLButtonElement = button(texts.fold, toggle, "tool bare fold", icon("chevron"));
+    const foldButton: HTMLButtonElement = createButton(texts.fold, toggle, "tool bare fold", createIcon("chevron"));
     const show = (isFolded: boolean): void => {
       this.isFolded = isFolded;
       this.element.classList.toggle("folded", isFolded);
-      fold.setAttribute("aria-expanded", String(!isFolded));
+      foldButton.setAttribute("aria-expanded", String(!isFolded));
     };
     show(this.isFolded);
-    return fold;
+    return foldButton;
   }
 
-  /** Replaces the plain trail with the calls and values, which the server sends a moment later. */
+  /** Replaces the plain trail with the calls and values, which the server sends later. */
   private show(provenance: LinkProvenance): void {
     const selectedLink = this.session.selection.selectedLink;
     if (selectedLink?.display !== provenance.display || selectedLink.link.name !== provenance.link) return;
@@ -90,19 +90,20 @@ function createPlace(link: LinkScene, showSource: (file: string, line: number) =
   const place = link.place;
   if (!place) return h("p", { class: "hint" }, texts.noPlace);
   const fullPlace = formatPlace(place.file, place.line, place.column);
-  const copy = button(
+  const copyButton = createButton(
     texts.copy,
     () => {
       void navigator.clipboard.writeText(fullPlace).then(() => {
-        copy.classList.add("done");
-        copy.title = texts.copied;
+        copyButton.classList.add("done");
+        copyButton.title = texts.copied;
       });
     },
     "tool bare",
-    icon("copy"),
+    createIcon("copy"),
   );
-  const text = button(fullPlace, () => showSource(place.file, place.line), "place", icon("file"), formatPlace(shortenPath(place.file), place.line, place.column));
-  return h("div", { class: "card-place" }, text, copy);
+  const shortPlace = formatPlace(shortenPath(place.file), place.line, place.column);
+  const placeButton = createButton(fullPlace, () => showSource(place.file, place.line), "place", createIcon("file"), shortPlace);
+  return h("div", { class: "card-place" }, placeButton, copyButton);
 }
 
 function createTrail(link: LinkScene): HTMLElement[] {

@@ -1,11 +1,11 @@
 import { coalesce, h } from "../../dom";
 import type { Session } from "../../state/session";
-import type { Reduced } from "../../state/slow-connection";
+import type { ReducedDisplay } from "../../state/slow-connection";
 import type { SlowCause } from "../../state/slowness";
 import { strings } from "../../strings";
 
 /** ms for which the notice that the page is slow is shown. */
-const NOTICE_MS = 15_000;
+const NOTICE_DURATION_MS = 15_000;
 
 /**
  * The notice over the scene while data is thinned: the data and its rate, the slow part, and the remedy. A notice that
@@ -29,12 +29,12 @@ export class SlowNotice {
 
   private update(): void {
     const { slowConnection, slowness, drawingPace } = this.session;
-    const { reduced: reducedDisplays } = slowConnection;
+    const { reducedDisplays } = slowConnection;
     const texts = strings.sharing;
     const cause = chooseCause(slowness.cause, this.slowPageNotice === "now", reducedDisplays.length);
     this.element.hidden = reducedDisplays.length === 0 && this.slowPageNotice !== "now";
     const lines = reducedDisplays.map((display) => h("div", {}, h("b", {}, this.nameOf(display)), ` ${formatReduction(display)}`));
-    if (this.slowPageNotice === "now" && drawingPace.software !== null) lines.push(h("div", {}, texts.software(drawingPace.software)));
+    if (this.slowPageNotice === "now" && drawingPace.softwareRenderer !== null) lines.push(h("div", {}, texts.software(drawingPace.softwareRenderer)));
     if (this.slowPageNotice === "now" && this.isLitAutomatically) lines.push(h("div", {}, texts.plainLight));
     this.element.replaceChildren(h("strong", {}, texts.slow[cause]), h("div", {}, texts.slowHints[cause]), ...lines);
   }
@@ -51,10 +51,10 @@ export class SlowNotice {
     setTimeout(() => {
       this.slowPageNotice = "done";
       update();
-    }, NOTICE_MS);
+    }, NOTICE_DURATION_MS);
   }
 
-  private nameOf({ display }: Reduced): string {
+  private nameOf({ display }: ReducedDisplay): string {
     return this.session.displays.find(display)?.name ?? display;
   }
 }
@@ -67,7 +67,7 @@ export function chooseCause(cause: SlowCause, isNoticeShown: boolean, reducedCou
   return isNoticeShown && reducedCount === 0 ? "page" : cause;
 }
 
-function formatReduction({ reduction, rate }: Reduced): string {
+function formatReduction({ reduction, rate }: ReducedDisplay): string {
   const texts = strings.sharing;
   const amount = reduction.kind === "points" ? texts.points(reduction.step) : texts.image(reduction);
   return rate === null ? amount : `${amount}, ${rate.toFixed(1)} Hz`;

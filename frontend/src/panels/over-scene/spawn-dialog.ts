@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { ModelChoice } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
 import type { SimulationState } from "../../state/simulation";
@@ -37,8 +37,8 @@ export class SpawnDialog {
       h("div", { class: "spawn-row" }, h("span", {}, texts.position), h("span", { class: "spawn-places" }, ...this.positionFields)),
       this.message,
     ];
-    const choices = [{ label: strings.shell.cancel }, { label: texts.spawn, isMain: true, run: () => this.submit() }];
-    this.dialog = new Dialog(texts.spawnTitle, rows, choices, "spawn-dialog");
+    const dialogButtons = [{ label: strings.shell.cancel }, { label: texts.spawn, isPrimary: true, run: () => this.submit() }];
+    this.dialog = new Dialog(texts.spawnTitle, rows, dialogButtons, "spawn-dialog");
     const unsubscribers = [
       modeling.modelsArrived.on((models) => {
         this.models = models;
@@ -84,7 +84,7 @@ export class SpawnDialog {
       this.onLocationChanged();
       this.list.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
     };
-    const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
+    const parts = [createIcon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
     const row = h("div", { class: "choice-row", role: "option", tabIndex: 0, aria: { selected: String(isChosen) }, onClick: choose }, ...parts);
     row.addEventListener("keydown", (event) => {
       if (event.key === "Enter" || event.key === " ") choose();

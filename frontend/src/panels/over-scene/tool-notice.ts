@@ -1,7 +1,7 @@
 import { h } from "../../dom";
 import type { ToolsState } from "../../state/tools";
 
-const NOTICE_MS = 4000;
+const NOTICE_DURATION_MS = 4000;
 
 /** The notice over the scene, for some seconds, that explains why the active tool refused a request. */
 export class ToolNotice {
@@ -18,6 +18,6 @@ export class ToolNotice {
     clearTimeout(this.timer);
     this.element.hidden = text === "";
     this.element.textContent = text;
-    if (text !== "") this.timer = setTimeout(() => this.show(""), NOTICE_MS);
+    if (text !== "") this.timer = setTimeout(() => this.show(""), NOTICE_DURATION_MS);
   }
 }

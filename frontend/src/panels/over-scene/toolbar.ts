@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { TOOLS } from "../../scene/tools/catalog";
 import type { ToolState, ToolsState } from "../../state/tools";
 import { strings } from "../../strings";
@@ -24,10 +24,10 @@ export class Toolbar {
     private readonly fit: () => void,
     private readonly showKeys: () => void,
     /** The button to the right of the tools. */
-    private readonly talk: HTMLElement,
+    private readonly talkButton: HTMLElement,
   ) {
     tools.listChanged.on(() => this.build());
-    tools.currentChanged.on(() => this.mark());
+    tools.currentChanged.on(() => this.markCurrent());
     this.element.addEventListener("keydown", (event) => this.onKeyDown(event));
     this.build();
   }
@@ -37,25 +37,25 @@ export class Toolbar {
     const texts = strings.tools;
     this.buttons.clear();
     for (const tool of tools.tools) this.buttons.set(tool, this.createToolButton(tool));
-    const addButton: HTMLButtonElement = button(
+    const addButton: HTMLButtonElement = createButton(
       texts.add,
       () => openMenu(addButton, tools.classes.map((tool) => ({ label: translateToolName(tool), run: () => tools.add(tool.cls) }))),
       "scene-tool small",
-      icon("plus"),
+      createIcon("plus"),
     );
-    const removeButton: HTMLButtonElement = button(
+    const removeButton: HTMLButtonElement = createButton(
       texts.remove,
       () => openMenu(removeButton, tools.tools.map((tool) => ({ label: translateToolName(tool), run: () => tools.remove(tool.id) }))),
       "scene-tool small",
-      icon("minus"),
+      createIcon("minus"),
     );
     removeButton.disabled = tools.tools.length === 0;
     for (const menuButton of [addButton, removeButton]) menuButton.setAttribute("aria-haspopup", "menu");
-    const fitButton = button(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, texts.fit));
+    const fitButton = createButton(texts.withKey(texts.fitHint, FIT_KEY), this.fit, "scene-tool small fit", createIcon("fit"), h("span", { class: "tool-name" }, texts.fit));
     fitButton.setAttribute("aria-label", texts.fit);
-    const helpButton = button(texts.help, this.showKeys, "scene-tool small", icon("keys"));
-    this.element.replaceChildren(...this.buttons.values(), addButton, removeButton, h("span", { class: "spacer" }), fitButton, this.talk, helpButton);
-    this.mark();
+    const helpButton = createButton(texts.help, this.showKeys, "scene-tool small", createIcon("keys"));
+    this.element.replaceChildren(...this.buttons.values(), addButton, removeButton, h("span", { class: "spacer" }), fitButton, this.talkButton, helpButton);
+    this.markCurrent();
   }
 
   private createToolButton(tool: ToolState): HTMLButtonElement {
@@ -63,15 +63,15 @@ export class Toolbar {
     const name = translateToolName(tool);
     const texts = strings.tools;
     const label = tool.isSupported && entry ? texts.withKey(name, entry.key) : texts.unknown(tool.cls);
-    const sign = icon(entry?.icon ?? "unknown");
-    const toolButton = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
+    const toolIcon = createIcon(entry?.icon ?? "unknown");
+    const toolButton = createButton(label, () => this.tools.activate(tool), "scene-tool", toolIcon, h("span", { class: "tool-name" }, name));
     toolButton.setAttribute("aria-label", name);
     toolButton.disabled = !tool.isSupported;
     if (entry) toolButton.setAttribute("aria-keyshortcuts", entry.key);
     return toolButton;
   }
 
-  private mark(): void {
+  private markCurrent(): void {
     const { current } = this.tools;
     for (const [tool, toolButton] of this.buttons) {
       toolButton.setAttribute("aria-pressed", String(tool === current));

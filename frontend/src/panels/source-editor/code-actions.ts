@@ -3,8 +3,8 @@ import type { EditorView } from "@codemirror/view";
 import { strings } from "../../strings";
 import { openMenuAt, type MenuEntry } from "../../widgets/menu";
 import type { Documents, ServerFinding } from "./documents";
-import { colorChoice } from "./meanings";
-import { placeOf } from "./server-places";
+import { colorPickerAt } from "./meanings";
+import { serverPositionOf } from "./server-places";
 import { applyWorkspaceEdit, messageOf, type WorkspaceEdit } from "./workspace-edit";
 
 /** A fix or refactoring, as in the protocol of language servers. */
@@ -15,13 +15,13 @@ interface CodeAction {
   readonly edit?: WorkspaceEdit | null;
 }
 
-const KINDS = ["quickfix", "source.fixAll", "refactor.extract", "refactor.inline", "refactor.rewrite"];
+const ACTION_KINDS = ["quickfix", "source.fixAll", "refactor.extract", "refactor.inline", "refactor.rewrite"];
 
 /** The client's capabilities for code actions, for the server. */
 export const ACTION_CAPABILITIES = {
   textDocument: {
     codeAction: {
-      codeActionLiteralSupport: { codeActionKind: { valueSet: KINDS } },
+      codeActionLiteralSupport: { codeActionKind: { valueSet: ACTION_KINDS } },
       isPreferredSupport: true,
       dataSupport: true,
       resolveSupport: { properties: ["edit"] },
@@ -46,29 +46,29 @@ export class CodeActions {
 
   /** Opens the menu for the selection, or for another range. */
   open(view: EditorView, range: { from: number; to: number } = view.state.selection.main): boolean {
-    void this.list(view, range).catch((error: unknown) => this.showMessage(messageOf(error)));
+    void this.showMenu(view, range).catch((error: unknown) => this.showMessage(messageOf(error)));
     return true;
   }
 
-  private async list(view: EditorView, { from, to }: { from: number; to: number }): Promise<void> {
+  private async showMenu(view: EditorView, { from, to }: { from: number; to: number }): Promise<void> {
     const { shownDocument } = this.documents;
     if (!shownDocument || shownDocument.readOnlyReason !== "") return;
     this.client.sync();
     const { doc } = view.state;
-    const range = { start: placeOf(doc, from), end: placeOf(doc, to) };
+    const range = { start: serverPositionOf(doc, from), end: serverPositionOf(doc, to) };
     const [firstLine, lastLine] = [range.start.line, range.end.line];
     const diagnostics = this.findingsOf(shownDocument.uri).filter((finding) => finding.range.start.line <= lastLine && finding.range.end.line >= firstLine);
     const request = { textDocument: { uri: shownDocument.uri }, range, context: { diagnostics } };
     const actions = (await this.client.request<object, CodeAction[] | null>("textDocument/codeAction", request)) ?? [];
     if (shownDocument !== this.documents.shownDocument) return;
-    const color = colorChoice(view, from);
-    if (actions.length === 0 && color === null) {
+    const chooseColor = colorPickerAt(view, from);
+    if (actions.length === 0 && chooseColor === null) {
       this.showMessage(strings.sourceEditor.noActions);
       return;
     }
     const anchor = view.coordsAtPos(Math.min(from, view.state.doc.length)) ?? view.dom.getBoundingClientRect();
     openMenuAt(anchor.left, anchor.bottom + 2, view.contentDOM, [
-      ...(color === null ? [] : [{ label: strings.sourceEditor.chooseColor, run: color }]),
+      ...(chooseColor === null ? [] : [{ label: strings.sourceEditor.chooseColor, run: chooseColor }]),
       ...this.createEntries(actions),
     ]);
   }
@@ -97,7 +97,7 @@ export class CodeActions {
 }
 
 function groupOf({ kind = "" }: CodeAction): number {
-  return KINDS.findIndex((knownKind) => kind === knownKind || kind.startsWith(`${knownKind}.`)) < 2 ? 0 : 1;
+  return ACTION_KINDS.findIndex((knownKind) => kind === knownKind || kind.startsWith(`${knownKind}.`)) < 2 ? 0 : 1;
 }
 
 function rankOf(action: CodeAction): number {

@@ -1,7 +1,7 @@
 import { ChangeSet, Text } from "@codemirror/state";
 
 /** Returns the text of a string, whose lines end with LF. */
-export function textOf(content: string): Text {
+export function toText(content: string): Text {
   return Text.of(content.split("\n"));
 }
 
@@ -29,8 +29,8 @@ export interface MergedChange {
  * Combines the change of a file with unsaved changes of the same text; null if both changed the same place, so that the
  * user must choose.
  */
-export function mergeChanges(disk: ChangeSet, unsavedChanges: ChangeSet): MergedChange | null {
-  const isTouched: boolean[] = [];
-  unsavedChanges.iterChangedRanges((start, end) => void isTouched.push(disk.touchesRange(start, end) !== false));
-  return isTouched.includes(true) ? null : { edit: disk.map(unsavedChanges), unsavedChanges: unsavedChanges.map(disk, true) };
+export function mergeChanges(diskChange: ChangeSet, unsavedChanges: ChangeSet): MergedChange | null {
+  const conflicts: boolean[] = [];
+  unsavedChanges.iterChangedRanges((start, end) => void conflicts.push(diskChange.touchesRange(start, end) !== false));
+  return conflicts.includes(true) ? null : { edit: diskChange.map(unsavedChanges), unsavedChanges: unsavedChanges.map(diskChange, true) };
 }

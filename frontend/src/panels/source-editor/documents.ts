@@ -25,5 +25,5 @@ export interface Documents {
   /** Changes a document, whether it is shown or not. */
   change(document: SourceDocument, spec: TransactionSpec): void;
   /** Receives the findings of a file. */
-  onFindings(uri: string, onFindings: readonly ServerFinding[]): void;
+  onFindings(uri: string, findings: readonly ServerFinding[]): void;
 }

@@ -1,55 +1,57 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Session } from "../../state/session";
 import type { TextStorage } from "../../storage";
 import { strings } from "../../strings";
 import type { Highlight } from "../description/source-view";
 import type { SourceEditor } from "./source-editor";
 
-const KEY = "linkwright.source-editor";
-const ON = "1";
+const STORAGE_KEY = "linkwright.source-editor";
+const ENABLED = "1";
 
-/** The place of the editor in the panel Source, and the button that shows it; the editor is loaded with its first file. */
+/**
+ * The place of the editor in the panel Source, and the button that shows it; the editor is loaded with its first file.
+ */
 export class EditorPane {
   readonly element = h("div", { class: "editor-pane" });
   /** Why there is no editor, if the user wants one. */
   readonly notice = h("p", { class: "empty editor-why-not", role: "status" });
   readonly toggle: HTMLButtonElement;
   private editor: SourceEditor | null = null;
-  private isWanted: boolean;
+  private isEnabled: boolean;
   /** Resolves when the editor is loaded; null unless it is being loaded. */
   private loadPromise: Promise<void> | null = null;
   /** The folder whose files can be edited without a description; empty if there is none. */
   private workspace = "";
-  private failure = "";
+  private loadFailure = "";
   /** The file that is to be shown. */
   private file: string | null = null;
   private highlights: readonly Highlight[] = [];
   private markedKey = "";
   /** The line to scroll to once the file is shown. */
-  private line: { file: string; line: number } | null = null;
+  private pendingLine: { file: string; line: number } | null = null;
 
   /**
-   * @param onLine - called with the file and the line that the user clicked.
+   * @param onLineClicked - called with the file and the line that the user clicked.
    * @param onChanged - called when another file is shown, or the editor is opened or closed.
    */
   constructor(
     private readonly session: Session,
     private readonly storage: TextStorage,
-    private readonly onLine: (file: string, line: number) => void,
+    private readonly onLineClicked: (file: string, line: number) => void,
     private readonly onChanged: (file: string | null) => void,
   ) {
-    this.isWanted = storage.getItem(KEY) === ON;
+    this.isEnabled = storage.getItem(STORAGE_KEY) === ENABLED;
     const texts = strings.sourceEditor;
-    this.toggle = button(texts.editHint, () => this.setWanted(!this.isWanted), "tool framed", icon("code"), texts.edit);
+    this.toggle = createButton(texts.editHint, () => this.setEnabled(!this.isEnabled), "tool framed", createIcon("code"), texts.edit);
     this.element.hidden = true;
     this.notice.hidden = true;
-    this.showToggle();
+    this.updateToggle();
   }
 
   /** Whether the editor is in place of the text. */
   get isShown(): boolean {
-    return this.isWanted && this.editor !== null && !this.editor.unavailableReason && (this.editor.shownDocument !== null || this.hasWorkspace);
+    return this.isEnabled && this.editor !== null && !this.editor.unavailableReason && (this.editor.shownDocument !== null || this.hasWorkspace);
   }
 
   /** Whether files can be edited without a description. */
@@ -61,8 +63,8 @@ export class EditorPane {
   openWorkspace(folder: string): void {
     if (folder === this.workspace) return;
     this.workspace = folder;
-    this.isWanted = true;
-    this.showToggle();
+    this.isEnabled = true;
+    this.updateToggle();
     if (this.editor === null) void this.load();
     else this.editor.openWorkspace(folder);
   }
@@ -71,7 +73,7 @@ export class EditorPane {
   async edit(path: string): Promise<void> {
     this.file = path;
     if (this.editor === null) await this.load();
-    await this.editor?.showOrBegin(path);
+    await this.editor?.showOrCreate(path);
   }
 
   get hasUnsaved(): boolean {
@@ -98,16 +100,16 @@ export class EditorPane {
   show(file: string | null, highlights: readonly Highlight[], line: number | null): boolean {
     this.file = file;
     this.highlights = highlights;
-    if (this.isWanted && file !== null && this.loadPromise === null) {
+    if (this.isEnabled && file !== null && this.loadPromise === null) {
       if (this.editor === null) void this.load();
       else if (this.editor.shownDocument?.path !== file) void this.editor.show(file);
     }
-    if (file !== null && line !== null) this.line = { file, line };
+    if (file !== null && line !== null) this.pendingLine = { file, line };
     const isEdited = this.isShown && (file === null ? this.hasWorkspace : this.editor?.shownDocument?.path === file);
-    if (isEdited) this.mark();
+    if (isEdited) this.showHighlights();
     this.element.hidden = !isEdited;
-    this.notice.textContent = this.failure || (this.editor?.unavailableReason ?? "");
-    this.notice.hidden = !this.isWanted || file === null || this.notice.textContent === "";
+    this.notice.textContent = this.loadFailure || (this.editor?.unavailableReason ?? "");
+    this.notice.hidden = !this.isEnabled || file === null || this.notice.textContent === "";
     return isEdited;
   }
 
@@ -115,26 +117,26 @@ export class EditorPane {
     return this.isShown ? (this.editor?.inspect() ?? null) : { unavailableReason: this.notice.hidden ? "" : this.notice.textContent };
   }
 
-  private mark(): void {
+  private showHighlights(): void {
     const key = JSON.stringify([this.file, this.highlights]);
-    const line = this.line?.file === this.file ? this.line.line : null;
+    const line = this.pendingLine?.file === this.file ? this.pendingLine.line : null;
     if (key === this.markedKey && line === null) return;
-    [this.markedKey, this.line] = [key, null];
-    this.editor?.mark(this.highlights, line);
+    [this.markedKey, this.pendingLine] = [key, null];
+    this.editor?.showHighlights(this.highlights, line);
   }
 
-  private setWanted(isWanted: boolean): void {
-    this.isWanted = isWanted;
-    this.storage.setItem(KEY, isWanted ? ON : "");
-    this.showToggle();
+  private setEnabled(isEnabled: boolean): void {
+    this.isEnabled = isEnabled;
+    this.storage.setItem(STORAGE_KEY, isEnabled ? ENABLED : "");
+    this.updateToggle();
     this.onChanged(this.file);
     if (this.isShown) this.editor?.view.focus();
   }
 
-  private showToggle(): void {
+  private updateToggle(): void {
     const texts = strings.sourceEditor;
-    this.toggle.setAttribute("aria-pressed", String(this.isWanted));
-    this.toggle.title = this.isWanted ? texts.view : texts.editHint;
+    this.toggle.setAttribute("aria-pressed", String(this.isEnabled));
+    this.toggle.title = this.isEnabled ? texts.view : texts.editHint;
   }
 
   private load(): Promise<void> {
@@ -145,9 +147,9 @@ export class EditorPane {
   private async loadEditor(): Promise<void> {
     try {
       const { SourceEditor } = await import("./source-editor");
-      this.editor = new SourceEditor(this.session, this.onLine);
+      this.editor = new SourceEditor(this.session, this.onLineClicked);
     } catch {
-      this.failure = strings.sourceEditor.failed;
+      this.loadFailure = strings.sourceEditor.failed;
     }
     this.loadPromise = null;
     const { editor } = this;
@@ -156,9 +158,9 @@ export class EditorPane {
       if (this.hasWorkspace) editor.openWorkspace(this.workspace);
       let lastKey = "";
       editor.changed.on(() => {
-        const now = `${String(editor.unavailableReason)} ${editor.shownDocument?.path ?? ""} ${editor.open.length}`;
-        if (now !== lastKey) this.onChanged(editor.shownDocument?.path ?? null);
-        lastKey = now;
+        const key = `${String(editor.unavailableReason)} ${editor.shownDocument?.path ?? ""} ${editor.open.length}`;
+        if (key !== lastKey) this.onChanged(editor.shownDocument?.path ?? null);
+        lastKey = key;
       });
     }
     this.onChanged(this.file);

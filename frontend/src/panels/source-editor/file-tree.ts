@@ -1,10 +1,10 @@
 import type { Connection } from "../../connection/connection";
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { Signal } from "../../signal";
 import { strings } from "../../strings";
 
-interface Folder {
+interface FolderEntries {
   readonly folders: readonly string[];
   readonly files: readonly string[];
 }
@@ -14,38 +14,38 @@ export class FileTree {
   readonly element: HTMLElement;
   readonly shownChanged = new Signal<boolean>();
   private readonly list = h("div", { class: "file-tree-list", role: "tree", aria: { label: strings.sourceEditor.tree } });
-  private readonly name = h("input", { class: "field file-tree-name" });
-  private readonly folders = new Map<string, Folder>();
+  private readonly nameField = h("input", { class: "field file-tree-name" });
+  private readonly folders = new Map<string, FolderEntries>();
   private readonly expandedFolders = new Set<string>();
   private root = "";
-  private current = "";
+  private currentPath = "";
   private unsavedPaths: ReadonlySet<string> = new Set();
   /** The path of the item that the Tab key reaches. */
-  private reachable = "";
+  private tabStopPath = "";
 
   /**
-   * @param onChosen - called with the path of a file to show.
-   * @param onCreated - called with the path of a file to create.
+   * @param onFileChosen - called with the path of a file to show.
+   * @param onFileCreated - called with the path of a file to create.
    */
   constructor(
     private readonly connection: Connection,
-    private readonly onChosen: (path: string) => void,
-    onCreated: (path: string) => void,
+    private readonly onFileChosen: (path: string) => void,
+    onFileCreated: (path: string) => void,
   ) {
     const texts = strings.sourceEditor;
-    this.name.placeholder = texts.newFilePath;
-    this.name.setAttribute("aria-label", texts.newFilePath);
-    this.name.hidden = true;
-    const add = button(texts.newFileHint, () => this.askName(), "tool bare", icon("plus"), texts.newFile);
-    this.name.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") this.name.hidden = true;
-      if (event.key !== "Enter" || this.name.value.trim() === "") return;
-      onCreated(join(this.root, this.name.value.trim()));
-      this.name.hidden = true;
+    this.nameField.placeholder = texts.newFilePath;
+    this.nameField.setAttribute("aria-label", texts.newFilePath);
+    this.nameField.hidden = true;
+    const newFileButton = createButton(texts.newFileHint, () => this.askName(), "tool bare", createIcon("plus"), texts.newFile);
+    this.nameField.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") this.nameField.hidden = true;
+      if (event.key !== "Enter" || this.nameField.value.trim() === "") return;
+      onFileCreated(joinPath(this.root, this.nameField.value.trim()));
+      this.nameField.hidden = true;
     });
-    this.element = h("nav", { class: "file-tree", aria: { label: texts.tree } }, h("div", { class: "file-tree-head" }, add), this.name, this.list);
+    this.element = h("nav", { class: "file-tree", aria: { label: texts.tree } }, h("div", { class: "file-tree-head" }, newFileButton), this.nameField, this.list);
     this.element.hidden = true;
-    this.list.addEventListener("click", (event) => this.activate(itemOf(event.target)));
+    this.list.addEventListener("click", (event) => this.activate(findItem(event.target)));
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
     connection.on("source_folder", ({ path, folders, files }) => {
       this.folders.set(path, { folders, files });
@@ -62,13 +62,13 @@ export class FileTree {
   setFolder(root: string): void {
     if (root !== this.root) this.folders.clear();
     this.root = root;
-    this.reachable = "";
-    this.expandTo(this.current);
+    this.tabStopPath = "";
+    this.expandTo(this.currentPath);
     this.reload();
   }
 
   setCurrent(path: string): void {
-    this.current = path;
+    this.currentPath = path;
     this.expandTo(path);
     this.draw();
   }
@@ -94,7 +94,7 @@ export class FileTree {
     const parts = path.slice(this.root.length).split("/").filter((part) => part !== "");
     let folder = this.root;
     for (const part of parts.slice(0, -1)) {
-      folder = join(folder, part);
+      folder = joinPath(folder, part);
       if (this.expandedFolders.has(folder)) continue;
       this.expandedFolders.add(folder);
       if (!this.element.hidden) this.request(folder);
@@ -102,38 +102,38 @@ export class FileTree {
   }
 
   private askName(): void {
-    this.name.hidden = false;
-    const folder = this.current.startsWith(this.root) ? this.current.slice(this.root.length + 1).replace(/[^/]*$/, "") : "";
-    this.name.value = folder;
-    this.name.focus();
+    this.nameField.hidden = false;
+    const folder = this.currentPath.startsWith(this.root) ? this.currentPath.slice(this.root.length + 1).replace(/[^/]*$/, "") : "";
+    this.nameField.value = folder;
+    this.nameField.focus();
   }
 
   private draw(): void {
     const items: HTMLElement[] = [];
     const hadFocus = this.list.contains(document.activeElement);
     this.addItems(items, this.root, 1);
-    if (!items.some((item) => item.dataset["path"] === this.reachable)) this.reachable = items[0]?.dataset["path"] ?? "";
-    for (const item of items) item.tabIndex = item.dataset["path"] === this.reachable ? 0 : -1;
+    if (!items.some((item) => item.dataset["path"] === this.tabStopPath)) this.tabStopPath = items[0]?.dataset["path"] ?? "";
+    for (const item of items) item.tabIndex = item.dataset["path"] === this.tabStopPath ? 0 : -1;
     this.list.replaceChildren(...items);
-    if (hadFocus) this.focus(this.reachable);
+    if (hadFocus) this.focus(this.tabStopPath);
   }
 
   private addItems(items: HTMLElement[], folder: string, level: number): void {
     const entries = this.folders.get(folder);
     if (!entries) return;
     for (const name of entries.folders) {
-      const path = join(folder, name);
+      const path = joinPath(folder, name);
       const isOpen = this.expandedFolders.has(path);
-      const item = createTreeItem(path, level, icon("chevron"), name);
+      const item = createTreeItem(path, level, createIcon("chevron"), name);
       item.setAttribute("aria-expanded", String(isOpen));
       items.push(item);
       if (isOpen) this.addItems(items, path, level + 1);
     }
     for (const name of entries.files) {
-      const path = join(folder, name);
+      const path = joinPath(folder, name);
       const isUnsaved = this.unsavedPaths.has(path);
-      const item = createTreeItem(path, level, icon("file"), name);
-      item.setAttribute("aria-selected", String(path === this.current));
+      const item = createTreeItem(path, level, createIcon("file"), name);
+      item.setAttribute("aria-selected", String(path === this.currentPath));
       if (isUnsaved) item.append(h("span", { class: "file-tree-unsaved", title: strings.sourceEditor.unsaved, aria: { label: strings.sourceEditor.unsaved }, role: "img" }, "●"));
       items.push(item);
     }
@@ -142,14 +142,14 @@ export class FileTree {
   private activate(item: HTMLElement | null): void {
     const path = item?.dataset["path"];
     if (!item || path === undefined) return;
-    this.reachable = path;
+    this.tabStopPath = path;
     if (!item.hasAttribute("aria-expanded")) {
       this.draw();
-      this.onChosen(path);
-    } else this.expand(path, !this.expandedFolders.has(path));
+      this.onFileChosen(path);
+    } else this.setExpanded(path, !this.expandedFolders.has(path));
   }
 
-  private expand(path: string, isOpen: boolean): void {
+  private setExpanded(path: string, isOpen: boolean): void {
     if (isOpen) {
       this.expandedFolders.add(path);
       this.request(path);
@@ -159,17 +159,17 @@ export class FileTree {
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const item = itemOf(event.target);
+    const item = findItem(event.target);
     const path = item?.dataset["path"];
     if (!item || path === undefined) return;
     const items = [...this.list.querySelectorAll<HTMLElement>("[role=treeitem]")];
     const index = items.indexOf(item);
-    const next = { ArrowDown: index + 1, ArrowUp: index - 1, Home: 0, End: items.length - 1 }[event.key];
+    const nextIndex = { ArrowDown: index + 1, ArrowUp: index - 1, Home: 0, End: items.length - 1 }[event.key];
     const expandedState = item.getAttribute("aria-expanded");
-    if (next !== undefined) this.focus(items[next]?.dataset["path"] ?? path);
+    if (nextIndex !== undefined) this.focus(items[nextIndex]?.dataset["path"] ?? path);
     else if (event.key === "Enter" || event.key === " ") this.activate(item);
-    else if (event.key === "ArrowRight" && expandedState === "false") this.expand(path, true);
-    else if (event.key === "ArrowLeft" && expandedState === "true") this.expand(path, false);
+    else if (event.key === "ArrowRight" && expandedState === "false") this.setExpanded(path, true);
+    else if (event.key === "ArrowLeft" && expandedState === "true") this.setExpanded(path, false);
     else if (event.key === "ArrowLeft") this.focus(path.replace(/\/[^/]*$/, ""));
     else return;
     event.preventDefault();
@@ -179,7 +179,7 @@ export class FileTree {
     const items = [...this.list.querySelectorAll<HTMLElement>("[role=treeitem]")];
     const item = items.find((candidate) => candidate.dataset["path"] === path);
     if (!item) return;
-    this.reachable = path;
+    this.tabStopPath = path;
     for (const candidate of items) candidate.tabIndex = candidate === item ? 0 : -1;
     item.focus();
   }
@@ -191,10 +191,10 @@ function createTreeItem(path: string, level: number, ...content: (Node | string)
   return item;
 }
 
-function itemOf(target: EventTarget | null): HTMLElement | null {
+function findItem(target: EventTarget | null): HTMLElement | null {
   return target instanceof Element ? target.closest<HTMLElement>("[role=treeitem]") : null;
 }
 
-function join(folder: string, name: string): string {
+function joinPath(folder: string, name: string): string {
   return `${folder.replace(/\/$/, "")}/${name}`;
 }

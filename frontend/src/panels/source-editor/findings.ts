@@ -13,14 +13,14 @@ export type FixFinding = (view: EditorView, range: { from: number; to: number })
 /**
  * Returns the transaction that shows findings in a text.
  *
- * @param fix - opens the fixes of a finding; null in a text that cannot be edited.
+ * @param openFixes - opens the fixes of a finding; null in a text that cannot be edited.
  */
-export function showFindings(state: EditorState, findings: readonly ServerFinding[], fix: FixFinding | null): TransactionSpec {
-  const actions = fix === null ? [] : [{ name: strings.sourceEditor.fix, apply: (view: EditorView, from: number, to: number) => fix(view, { from, to }) }];
-  return setDiagnostics(state, findings.map((finding) => ({ ...diagnosticOf(state, finding), actions })));
+export function showFindings(state: EditorState, findings: readonly ServerFinding[], openFixes: FixFinding | null): TransactionSpec {
+  const actions = openFixes === null ? [] : [{ name: strings.sourceEditor.fix, apply: (view: EditorView, from: number, to: number) => openFixes(view, { from, to }) }];
+  return setDiagnostics(state, findings.map((finding) => ({ ...toDiagnostic(state, finding), actions })));
 }
 
-function diagnosticOf({ doc }: EditorState, { range, severity = 1, code, message }: ServerFinding): Diagnostic {
+function toDiagnostic({ doc }: EditorState, { range, severity = 1, code, message }: ServerFinding): Diagnostic {
   const [from, to] = [offsetOf(doc, range.start), offsetOf(doc, range.end)];
   return {
     from,

@@ -13,16 +13,16 @@ import { pathOf } from "./server-places";
 import { sanitizeHtml } from "./safe-html";
 import type { SourceDocument } from "./source-document";
 
-const TIMEOUT_MS = 20_000;
+const REQUEST_TIMEOUT_MS = 20_000;
 /** A server has this time to start, ms: on a busy computer it takes longer than an answer. */
-const START_MS = 600_000;
+const START_TIMEOUT_MS = 600_000;
 /** Changes are sent this time after the last key, ms. */
-const SYNC_MS = 120;
+const SYNC_DELAY_MS = 120;
 
 /** Error codes of the protocol: the request was cancelled, or its text has changed meanwhile. */
-const OUTDATED: readonly unknown[] = [-32800, -32801];
+const OUTDATED_CODES: readonly unknown[] = [-32800, -32801];
 /** Requests that the next key or movement of the mouse repeats. */
-const REPEATED = ["textDocument/completion", "textDocument/hover"];
+const REPEATED_METHODS = ["textDocument/completion", "textDocument/hover"];
 
 class TimeoutError extends Error {
   constructor() {
@@ -30,32 +30,34 @@ class TimeoutError extends Error {
   }
 }
 
-/** A client that waits for the start of its server, and treats an outdated answer as an empty one instead of an error. */
+/**
+ * A client that waits for the start of its server, and treats an outdated answer as an empty one instead of an error.
+ */
 class PatientClient extends LSPClient {
   // eslint-disable-next-line @typescript-eslint/no-unnecessary-type-parameters -- the type of the overridden method
   override request<Params, Result>(method: string, params: Params): Promise<Result> {
-    const answer = this.limitTime(super.request<Params, Result>(method, params));
-    if (!REPEATED.includes(method)) return answer;
-    return answer.catch((error: unknown) => {
+    const response = this.limitTime(super.request<Params, Result>(method, params));
+    if (!REPEATED_METHODS.includes(method)) return response;
+    return response.catch((error: unknown) => {
       if (isOutdated(error)) return null as Result;
       throw error;
     });
   }
 
   /** Rejects if an answer takes too long, counted from the start of the server. */
-  private limitTime<Result>(answer: Promise<Result>): Promise<Result> {
+  private limitTime<Result>(response: Promise<Result>): Promise<Result> {
     return new Promise((resolve, reject) => {
       let timer: ReturnType<typeof setTimeout> | undefined;
-      const startTimer = (): void => void (timer = setTimeout(() => reject(new TimeoutError()), TIMEOUT_MS));
+      const startTimer = (): void => void (timer = setTimeout(() => reject(new TimeoutError()), REQUEST_TIMEOUT_MS));
       this.initializing.then(startTimer, () => undefined); // the answer is rejected, too
-      answer.then(resolve, reject).finally(() => clearTimeout(timer));
+      response.then(resolve, reject).finally(() => clearTimeout(timer));
     });
   }
 }
 
 function isOutdated(error: unknown): boolean {
   if (error instanceof TimeoutError) return true;
-  return typeof error === "object" && error !== null && "code" in error && OUTDATED.includes(error.code);
+  return typeof error === "object" && error !== null && "code" in error && OUTDATED_CODES.includes(error.code);
 }
 
 class DocumentFile implements WorkspaceFile {
@@ -159,7 +161,7 @@ export class LanguageService {
   ) {
     let workspace: DocumentWorkspace | undefined;
     this.config = {
-      timeout: START_MS,
+      timeout: START_TIMEOUT_MS,
       sanitizeHTML: sanitizeHtml,
       workspace: (client) => (workspace = new DocumentWorkspace(client, documents)),
       notificationHandlers: {
@@ -240,7 +242,7 @@ class Synchronizer {
   update({ docChanged }: ViewUpdate): void {
     if (!docChanged) return;
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.client.sync(), SYNC_MS);
+    this.timer = setTimeout(() => this.client.sync(), SYNC_DELAY_MS);
   }
 
   destroy(): void {

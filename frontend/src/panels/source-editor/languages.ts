@@ -23,6 +23,6 @@ export function languageOf(path: string): string {
 
 /** Returns one step of the indentation that a text uses, two spaces by default. */
 export function detectIndentation(text: string): string {
-  const first = /^(\t|  +)\S/m.exec(text)?.[1];
-  return first === undefined || first.length > 8 ? "  " : first;
+  const indentation = /^(\t|  +)\S/m.exec(text)?.[1];
+  return indentation === undefined || indentation.length > 8 ? "  " : indentation;
 }

@@ -4,7 +4,7 @@ import { isWithinMessageSize } from "./message-size";
 import type { SourceDocument } from "./source-document";
 
 /** A text is sent this time after its last change, ms. */
-const PAUSE_MS = 300;
+const SEND_DELAY_MS = 300;
 
 /** The documents of the editor, for the scene. */
 interface LiveDocuments {
@@ -18,7 +18,7 @@ interface LiveDocuments {
 /** Shows the unsaved texts in the scene, soon after they were typed. */
 export class LiveTexts {
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private number = 0;
+  private lastNumber = 0;
   /** The newest request about each file whose unsaved text the server has, or has not yet removed. */
   private readonly newestRequests = new Map<string, { readonly number: number; readonly isRemoval: boolean }>();
   private readonly outcomes = new Map<string, UnsavedTextShown["outcome"]>();
@@ -42,11 +42,11 @@ export class LiveTexts {
   /** Sends the texts that have changed, after a pause. */
   scheduleSending(): void {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.send(), PAUSE_MS);
+    this.timer = setTimeout(() => this.send(), SEND_DELAY_MS);
   }
 
   /** Sends all unsaved texts to a server that has none of them, because it was restarted. */
-  restart(): void {
+  resendAll(): void {
     this.newestRequests.clear();
     this.outcomes.clear();
     for (const document of this.documents.open) document.describedText = null;
@@ -61,26 +61,26 @@ export class LiveTexts {
         if (document.newestSent?.changes.empty === true) continue;
         const text = document.state.doc.toString();
         if (!isWithinMessageSize(text)) continue;
-        this.number += 1;
-        document.beginShowing(this.number);
+        this.lastNumber += 1;
+        document.recordSent(this.lastNumber);
         this.request(path, text);
       } else if (hasServerText && !document.isUnsaved) {
-        this.number += 1;
-        document.beginShowing(this.number);
+        this.lastNumber += 1;
+        document.recordSent(this.lastNumber);
         this.request(path, null);
       }
     }
   }
 
   private request(path: string, text: string | null): void {
-    this.newestRequests.set(path, { number: this.number, isRemoval: text === null });
-    this.connection.send({ type: "show_unsaved_text", number: this.number, path, text });
+    this.newestRequests.set(path, { number: this.lastNumber, isRemoval: text === null });
+    this.connection.send({ type: "show_unsaved_text", number: this.lastNumber, path, text });
   }
 
   private onShown({ number, path, outcome }: UnsavedTextShown): void {
     const document = this.documents.open.find((candidate) => candidate.path === path);
     if (!document) return;
-    document.endShowing(number, outcome === "shown");
+    document.recordShown(number, outcome === "shown");
     const newestRequest = this.newestRequests.get(path);
     if (newestRequest?.number !== number) return;
     if (newestRequest.isRemoval) {

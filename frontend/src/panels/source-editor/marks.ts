@@ -4,7 +4,7 @@ import type { Highlight } from "../description/source-view";
 import type { SourceDocument } from "./source-document";
 
 const setMarks = StateEffect.define<DecorationSet>();
-const LOOKS = { focus: Decoration.line({ class: "cm-focus-line" }), problem: Decoration.line({ class: "cm-problem-line" }) };
+const LINE_DECORATIONS = { focus: Decoration.line({ class: "cm-focus-line" }), problem: Decoration.line({ class: "cm-problem-line" }) };
 
 /** The marked lines, which move with the text. */
 const marks = StateField.define<DecorationSet>({
@@ -19,11 +19,11 @@ const marks = StateField.define<DecorationSet>({
 export const markedLines: Extension = marks;
 
 /** Returns the effect that marks lines, given as lines of the text that the shown description was read from. */
-export function marksOf(document: SourceDocument, highlights: readonly Highlight[]): StateEffect<DecorationSet> {
+export function createMarkEffect(document: SourceDocument, highlights: readonly Highlight[]): StateEffect<DecorationSet> {
   const ranges: Range<Decoration>[] = [];
   for (const { firstLine, lastLine, kind } of highlights) {
     const [firstNumber, lastNumber] = [firstLine, lastLine].map((line) => document.state.doc.lineAt(document.currentLineOf(line)).number);
-    for (let line = firstNumber ?? 1; line <= (lastNumber ?? 0); line += 1) ranges.push(LOOKS[kind].range(document.state.doc.line(line).from));
+    for (let line = firstNumber ?? 1; line <= (lastNumber ?? 0); line += 1) ranges.push(LINE_DECORATIONS[kind].range(document.state.doc.line(line).from));
   }
   return setMarks.of(Decoration.set(ranges, true));
 }

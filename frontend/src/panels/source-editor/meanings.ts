@@ -4,13 +4,13 @@ import { Prec, RangeSet, StateEffect, type Extension, type Range, type Text } fr
 import { Decoration, EditorView, ViewPlugin, WidgetType, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { h } from "../../dom";
 import { strings } from "../../strings";
-import { colorOf, hexOf, decodeTokens, type Color, type Legend } from "./server-meanings";
-import { offsetOf, placeOf, type ServerRange } from "./server-places";
+import { parseHex, toHex, decodeTokens, type Color, type Legend } from "./server-meanings";
+import { offsetOf, serverPositionOf, type ServerRange } from "./server-places";
 import type { TextEdit } from "./workspace-edit";
 
 /** The meaning of a text is requested this time after its last change, ms. */
-const PAUSE_MS = 250;
-const MAX_HINT = 60;
+const REQUEST_DELAY_MS = 250;
+const MAX_HINT_LENGTH = 60;
 
 interface Hint {
   readonly position: ServerRange["start"];
@@ -42,8 +42,8 @@ class HintWidget extends WidgetType {
   }
 
   toDOM(): HTMLElement {
-    const short = this.label.length > MAX_HINT ? `${this.label.slice(0, MAX_HINT)}…` : this.label;
-    return h("span", { class: "cm-inlay-hint", title: this.label, aria: { hidden: "true" } }, short);
+    const shortLabel = this.label.length > MAX_HINT_LENGTH ? `${this.label.slice(0, MAX_HINT_LENGTH)}…` : this.label;
+    return h("span", { class: "cm-inlay-hint", title: this.label, aria: { hidden: "true" } }, shortLabel);
   }
 }
 
@@ -51,7 +51,7 @@ class HintWidget extends WidgetType {
 class ColorWidget extends WidgetType {
   constructor(
     private readonly writtenColor: WrittenColor,
-    private readonly choose: (view: EditorView, writtenColor: WrittenColor, swatch: HTMLElement) => void,
+    private readonly openPicker: (view: EditorView, writtenColor: WrittenColor, swatch: HTMLElement) => void,
   ) {
     super();
   }
@@ -66,7 +66,7 @@ class ColorWidget extends WidgetType {
     (swatch.firstElementChild as HTMLElement).style.background = `rgb(${red * 255} ${green * 255} ${blue * 255} / ${alpha})`;
     swatch.addEventListener("mousedown", (event) => {
       event.preventDefault();
-      this.choose(view, this.writtenColor, swatch);
+      this.openPicker(view, this.writtenColor, swatch);
     });
     return swatch;
   }
@@ -104,10 +104,10 @@ class Meanings {
   }
 
   /** Opens the browser's choice of colors for a color of the text. */
-  choose(writtenColor: WrittenColor, anchor: DOMRect): void {
+  openPicker(writtenColor: WrittenColor, anchor: DOMRect): void {
     const field = h("input", { class: "cm-color-field", aria: { label: strings.sourceEditor.chooseColor } });
     field.type = "color";
-    field.value = hexOf(writtenColor.color);
+    field.value = toHex(writtenColor.color);
     field.style.left = `${anchor.left}px`;
     field.style.top = `${anchor.bottom}px`;
     document.body.append(field);
@@ -120,17 +120,17 @@ class Meanings {
   private async write({ range, color }: WrittenColor, hex: string): Promise<void> {
     this.client.sync();
     const { doc } = this.view.state;
-    const request = { textDocument: { uri: this.uri }, range, color: { ...colorOf(hex), alpha: color.alpha } };
-    const [first] = (await this.client.request<object, { label: string; textEdit?: TextEdit }[] | null>("textDocument/colorPresentation", request)) ?? [];
-    if (this.isClosed || first === undefined || this.view.state.doc !== doc) return;
-    const edit = first.textEdit ?? { range, newText: first.label };
+    const request = { textDocument: { uri: this.uri }, range, color: { ...parseHex(hex), alpha: color.alpha } };
+    const [presentation] = (await this.client.request<object, { label: string; textEdit?: TextEdit }[] | null>("textDocument/colorPresentation", request)) ?? [];
+    if (this.isClosed || presentation === undefined || this.view.state.doc !== doc) return;
+    const edit = presentation.textEdit ?? { range, newText: presentation.label };
     this.view.dispatch({ changes: { from: offsetOf(doc, edit.range.start), to: offsetOf(doc, edit.range.end), insert: edit.newText }, userEvent: "action" });
     this.view.focus();
   }
 
   private requestLater(): void {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.request().catch(() => undefined), PAUSE_MS); // the next change repeats the request
+    this.timer = setTimeout(() => void this.request().catch(() => undefined), REQUEST_DELAY_MS); // the next change repeats the request
   }
 
   private async request(): Promise<void> {
@@ -140,7 +140,7 @@ class Meanings {
     const { doc } = view.state;
     const { from, to } = view.viewport;
     const textDocument = { uri: this.uri };
-    const request = { textDocument, range: { start: placeOf(doc, from), end: placeOf(doc, to) } };
+    const request = { textDocument, range: { start: serverPositionOf(doc, from), end: serverPositionOf(doc, to) } };
     const [hints, tokens, colors] = await Promise.all([
       this.sendRequest<Hint[]>("textDocument/inlayHint", request),
       this.sendRequest<{ data: number[] }>("textDocument/semanticTokens/range", request),
@@ -150,8 +150,8 @@ class Meanings {
     this.colors = colors ?? [];
     const provider = client.serverCapabilities?.semanticTokensProvider as { legend: Legend } | undefined;
     const ranges = [
-      ...(hints ?? []).map((hint) => hintAt(doc, hint)),
-      ...(provider ? decodeTokens(doc, tokens?.data ?? [], provider.legend).map(({ from, to, names }) => markOf(names).range(from, to)) : []),
+      ...(hints ?? []).map((hint) => createHint(doc, hint)),
+      ...(provider ? decodeTokens(doc, tokens?.data ?? [], provider.legend).map(({ from, to, names }) => createNameMark(names).range(from, to)) : []),
       ...this.colors.map((color) => this.createSwatch(doc, color)),
     ];
     const decorations = RangeSet.of(ranges, true);
@@ -160,8 +160,8 @@ class Meanings {
   }
 
   private createSwatch(doc: Text, writtenColor: WrittenColor): Range<Decoration> {
-    const choose = (_: EditorView, color: WrittenColor, element: HTMLElement): void => this.choose(color, element.getBoundingClientRect());
-    return Decoration.widget({ widget: new ColorWidget(writtenColor, choose), side: -1 }).range(offsetOf(doc, writtenColor.range.start));
+    const openPicker = (_: EditorView, color: WrittenColor, element: HTMLElement): void => this.openPicker(color, element.getBoundingClientRect());
+    return Decoration.widget({ widget: new ColorWidget(writtenColor, openPicker), side: -1 }).range(offsetOf(doc, writtenColor.range.start));
   }
 
   /** Returns the answer of the server; null if it has none because the text has changed. */
@@ -186,20 +186,20 @@ export function createMeanings(client: LSPClient, uri: string): Extension {
 }
 
 /** Returns a function that opens the choice of the color on the line of a position; null if there is no color. */
-export function colorChoice(view: EditorView, position: number): (() => void) | null {
+export function colorPickerAt(view: EditorView, position: number): (() => void) | null {
   const plugin = view.plugin(createPlugin());
   const line = view.state.doc.lineAt(position).number - 1;
   const writtenColor = plugin?.colors.find(({ range }) => range.start.line === line);
   if (!plugin || !writtenColor) return null;
   const anchor = view.coordsAtPos(offsetOf(view.state.doc, writtenColor.range.start)) ?? view.dom.getBoundingClientRect();
-  return () => plugin.choose(writtenColor, new DOMRect(anchor.left, anchor.top, 0, anchor.bottom - anchor.top));
+  return () => plugin.openPicker(writtenColor, new DOMRect(anchor.left, anchor.top, 0, anchor.bottom - anchor.top));
 }
 
-function hintAt(doc: Text, { position, label }: Hint): Range<Decoration> {
+function createHint(doc: Text, { position, label }: Hint): Range<Decoration> {
   const text = typeof label === "string" ? label : label.map(({ value }) => value).join("");
   return Decoration.widget({ widget: new HintWidget(text), side: 1 }).range(offsetOf(doc, position));
 }
 
-function markOf(names: readonly string[]): Decoration {
+function createNameMark(names: readonly string[]): Decoration {
   return Decoration.mark({ class: names.map((name) => `cm-token-${name}`).join(" ") });
 }

@@ -5,7 +5,7 @@ import { strings } from "../../strings";
 import { shortenPath } from "../place";
 import type { Documents } from "./documents";
 import type { ListedFile, ListedPlace, PlaceList } from "./place-list";
-import { pathOf, placeOf, offsetOf, type ServerRange } from "./server-places";
+import { pathOf, serverPositionOf, offsetOf, type ServerRange } from "./server-places";
 import type { SourceDocument } from "./source-document";
 import { messageOf } from "./workspace-edit";
 
@@ -21,8 +21,8 @@ interface Bookmark {
   position: number;
 }
 
-const MAX_BACK = 100;
-const CONTEXT = 80;
+const MAX_HISTORY = 100;
+const CONTEXT_LENGTH = 80;
 
 /** Definitions, references, and the way back to the places before. */
 export class Navigation {
@@ -46,7 +46,7 @@ export class Navigation {
       const [firstLocation, ...otherLocations] = locations;
       if (!firstLocation) this.showMessage(texts.noDefinition);
       else if (otherLocations.length === 0) await this.open(firstLocation);
-      else await this.show(texts.definitions(locations.length), locations);
+      else await this.showList(texts.definitions(locations.length), locations);
     }).catch((error: unknown) => this.showMessage(messageOf(error)));
     return true;
   }
@@ -57,7 +57,7 @@ export class Navigation {
     const { head } = view.state.selection.main;
     void this.requestLocations(view, "textDocument/references", head, { context: { includeDeclaration: true } }).then(async (locations) => {
       if (locations.length === 0) this.showMessage(texts.noReferences);
-      else await this.show(texts.references(locations.length), locations);
+      else await this.showList(texts.references(locations.length), locations);
     }).catch((error: unknown) => this.showMessage(messageOf(error)));
     return true;
   }
@@ -76,7 +76,7 @@ export class Navigation {
     if (!bookmark || this.isReturning || (lastBookmark?.document === bookmark.document && lastBookmark.position === bookmark.position)) return;
     this.history.push(bookmark);
     this.forward.length = 0;
-    if (this.history.length > MAX_BACK) this.history.shift();
+    if (this.history.length > MAX_HISTORY) this.history.shift();
   }
 
   goBack(): boolean {
@@ -122,12 +122,12 @@ export class Navigation {
     const { shownDocument } = this.documents;
     if (!shownDocument) return [];
     this.client.sync();
-    const request = { textDocument: { uri: shownDocument.uri }, position: placeOf(view.state.doc, position), ...parameters };
+    const request = { textDocument: { uri: shownDocument.uri }, position: serverPositionOf(view.state.doc, position), ...parameters };
     const locations = await this.client.request<object, ServerLocation | ServerLocation[] | null>(method, request);
     return locations === null ? [] : [locations].flat();
   }
 
-  private async show(heading: string, locations: readonly ServerLocation[]): Promise<void> {
+  private async showList(heading: string, locations: readonly ServerLocation[]): Promise<void> {
     const files = new Map<string, ServerLocation[]>();
     for (const location of locations) files.set(location.uri, [...(files.get(location.uri) ?? []), location]);
     this.listedPlaces = [];
@@ -135,28 +135,28 @@ export class Navigation {
     for (const [uri, ranges] of files) {
       const path = pathOf(uri);
       const document = path === null ? null : await this.documents.load(path);
-      if (document) listedFiles.push({ name: shortenPath(document.path), path: document.path, places: ranges.map(({ range }) => this.listPlace(document, range)) });
+      if (document) listedFiles.push({ name: shortenPath(document.path), path: document.path, places: ranges.map(({ range }) => this.createPlace(document, range)) });
     }
     this.list.show(heading, listedFiles);
   }
 
-  private listPlace(document: SourceDocument, range: ServerRange): ListedPlace {
+  private createPlace(document: SourceDocument, range: ServerRange): ListedPlace {
     const { doc } = document.state;
     const bookmark = { document, position: offsetOf(doc, range.start) };
     this.listedPlaces.push(bookmark);
-    return { ...excerptOf(document, range), open: () => void this.jumpTo(document, bookmark.position) };
+    return { ...createExcerpt(document, range), open: () => void this.jumpTo(document, bookmark.position) };
   }
 }
 
 /** Returns the line of a range, in three parts. */
-export function excerptOf({ state: { doc } }: SourceDocument, range: ServerRange): Omit<ListedPlace, "open"> {
+export function createExcerpt({ state: { doc } }: SourceDocument, range: ServerRange): Omit<ListedPlace, "open"> {
   const [from, to] = [offsetOf(doc, range.start), offsetOf(doc, range.end)];
   const line = doc.lineAt(from);
   const end = Math.min(to, line.to);
   return {
     line: line.number,
-    textBefore: doc.sliceString(Math.max(line.from, from - CONTEXT), from).trimStart(),
+    textBefore: doc.sliceString(Math.max(line.from, from - CONTEXT_LENGTH), from).trimStart(),
     name: doc.sliceString(from, end),
-    textAfter: doc.sliceString(end, Math.min(line.to, end + CONTEXT)),
+    textAfter: doc.sliceString(end, Math.min(line.to, end + CONTEXT_LENGTH)),
   };
 }

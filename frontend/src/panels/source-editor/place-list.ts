@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import { strings } from "../../strings";
 
 /** A line of a file in a list; `name` is the emphasized part of its text. */
@@ -27,12 +27,12 @@ export class PlaceList {
 
   /** @param onClosed - called when the user has closed the list, and the focus is to return to the text. */
   constructor(private readonly onClosed: () => void) {
-    const close = button(strings.close, () => this.close(), "tool bare", icon("close"));
-    this.element.append(h("header", {}, this.heading, close), this.list);
+    const closeButton = createButton(strings.close, () => this.close(), "tool bare", createIcon("close"));
+    this.element.append(h("header", {}, this.heading, closeButton), this.list);
     this.element.hidden = true;
     this.list.addEventListener("click", ({ target }) => {
       const option = target instanceof Element ? target.closest<HTMLElement>("[role=option]") : null;
-      if (option) this.choose(this.options.indexOf(option));
+      if (option) this.openPlace(this.options.indexOf(option));
     });
     this.list.addEventListener("keydown", (event) => this.onKeyDown(event));
   }
@@ -47,7 +47,7 @@ export class PlaceList {
         "div",
         { role: "group", aria: { label: name } },
         h("div", { class: "place-list-file", title: path, aria: { hidden: "true" } }, name),
-        ...places.map(optionOf),
+        ...places.map(createOption),
       ),
     );
     this.list.replaceChildren(...groups);
@@ -66,7 +66,7 @@ export class PlaceList {
     return [...this.list.querySelectorAll<HTMLElement>("[role=option]")];
   }
 
-  private choose(index: number): void {
+  private openPlace(index: number): void {
     this.select(index);
     this.places[index]?.open();
   }
@@ -87,9 +87,9 @@ export class PlaceList {
     const { options } = this;
     const index = options.findIndex((option) => option.tabIndex === 0);
     const lastIndex = options.length - 1;
-    const next = { ArrowDown: Math.min(index + 1, lastIndex), ArrowUp: Math.max(index - 1, 0), Home: 0, End: lastIndex }[event.key];
-    if (next !== undefined) this.focus(next);
-    else if (event.key === "Enter" || event.key === " ") this.choose(index);
+    const nextIndex = { ArrowDown: Math.min(index + 1, lastIndex), ArrowUp: Math.max(index - 1, 0), Home: 0, End: lastIndex }[event.key];
+    if (nextIndex !== undefined) this.focus(nextIndex);
+    else if (event.key === "Enter" || event.key === " ") this.openPlace(index);
     else if (event.key === "Escape") this.close();
     else return;
     event.preventDefault();
@@ -97,7 +97,7 @@ export class PlaceList {
   }
 }
 
-function optionOf({ line, textBefore, name, textAfter }: ListedPlace): HTMLElement {
+function createOption({ line, textBefore, name, textAfter }: ListedPlace): HTMLElement {
   return h(
     "div",
     { class: "place-list-place", role: "option", tabIndex: -1 },

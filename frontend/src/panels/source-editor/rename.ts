@@ -3,11 +3,11 @@ import { strings } from "../../strings";
 import type { Documents } from "./documents";
 import type { LanguageService } from "./language-service";
 import { confirmRename, type RenamedFile } from "./rename-preview";
-import { pathOf, placeOf, rangeText, type ServerRange } from "./server-places";
+import { pathOf, serverPositionOf, textOfRange, type ServerRange } from "./server-places";
 import { applyWorkspaceEdit, groupByFile, messageOf, type WorkspaceEdit } from "./workspace-edit";
 
 /** The place of a symbol that can be renamed, with its name unless that is the text there. */
-type RenamedPlace = ServerRange | { readonly range: ServerRange; readonly placeholder: string };
+type RenameTarget = ServerRange | { readonly range: ServerRange; readonly placeholder: string };
 
 /**
  * Asks for a new name for the symbol at the cursor, shows what changes, and renames the symbol in all files, which are
@@ -23,16 +23,16 @@ async function rename(view: EditorView, { client, message }: LanguageService, do
   const { shownDocument } = documents;
   if (!shownDocument) return "";
   client.sync();
-  const request = { textDocument: { uri: shownDocument.uri }, position: placeOf(view.state.doc, view.state.selection.main.head) };
-  const renamedPlace = await client.request<object, RenamedPlace | null>("textDocument/prepareRename", request);
-  if (renamedPlace === null) return texts.nothingToRename;
-  const oldName = "placeholder" in renamedPlace ? renamedPlace.placeholder : rangeText(view.state.doc, renamedPlace);
+  const request = { textDocument: { uri: shownDocument.uri }, position: serverPositionOf(view.state.doc, view.state.selection.main.head) };
+  const target = await client.request<object, RenameTarget | null>("textDocument/prepareRename", request);
+  if (target === null) return texts.nothingToRename;
+  const oldName = "placeholder" in target ? target.placeholder : textOfRange(view.state.doc, target);
   const newName = await askName(view, oldName);
   if (newName === null || newName === oldName) return "";
   client.sync();
   const remarks: string[] = [];
-  const stop = message.on((remark) => remarks.push(remark));
-  const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...request, newName }).finally(stop);
+  const unsubscribe = message.on((remark) => remarks.push(remark));
+  const edit = await client.request<object, WorkspaceEdit | null>("textDocument/rename", { ...request, newName }).finally(unsubscribe);
   const files = edit === null ? [] : await listRenamedFiles(edit, documents);
   if (edit === null || files.length === 0) return [texts.nothingToRename, ...remarks].join(" ");
   if (!(await confirmRename(oldName, newName, files, remarks))) return texts.notRenamed;

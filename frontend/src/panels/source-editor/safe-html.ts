@@ -1,5 +1,5 @@
-const ALLOWED = new Set("A B BLOCKQUOTE BR CODE DEL EM H1 H2 H3 H4 H5 H6 HR I LI OL P PRE SPAN STRONG TABLE TBODY TD TH THEAD TR UL".split(" "));
-const DROPPED = new Set(["SCRIPT", "STYLE", "TEMPLATE", "IFRAME", "OBJECT", "EMBED", "SVG", "MATH"]);
+const ALLOWED_TAGS = new Set("A B BLOCKQUOTE BR CODE DEL EM H1 H2 H3 H4 H5 H6 HR I LI OL P PRE SPAN STRONG TABLE TBODY TD TH THEAD TR UL".split(" "));
+const DROPPED_TAGS = new Set(["SCRIPT", "STYLE", "TEMPLATE", "IFRAME", "OBJECT", "EMBED", "SVG", "MATH"]);
 
 const IMAGE_ADDRESS = /^data:image\/(?:png|jpeg|webp|gif);base64,/i;
 
@@ -9,27 +9,27 @@ const IMAGE_ADDRESS = /^data:image\/(?:png|jpeg|webp|gif);base64,/i;
  */
 export function sanitizeHtml(html: string, { allowsImages = false } = {}): string {
   const { body } = new DOMParser().parseFromString(html, "text/html");
-  clean(body, allowsImages);
+  sanitizeChildren(body, allowsImages);
   return body.innerHTML;
 }
 
-function clean(element: Element, allowsImages: boolean): void {
+function sanitizeChildren(element: Element, allowsImages: boolean): void {
   for (const child of [...element.children]) {
-    if (DROPPED.has(child.tagName.toUpperCase())) {
+    if (DROPPED_TAGS.has(child.tagName.toUpperCase())) {
       child.remove();
       continue;
     }
-    clean(child, allowsImages);
+    sanitizeChildren(child, allowsImages);
     const isImage = allowsImages && child.tagName === "IMG" && IMAGE_ADDRESS.test(child.getAttribute("src") ?? "");
-    if (!isImage && !ALLOWED.has(child.tagName)) {
+    if (!isImage && !ALLOWED_TAGS.has(child.tagName)) {
       child.replaceWith(...child.childNodes);
       continue;
     }
     for (const { name, value } of [...child.attributes]) {
       const isLink = child.tagName === "A" && name === "href" && /^https?:\/\//i.test(value);
-      const isOfImage = isImage && (name === "src" || name === "alt");
+      const isImageAttribute = isImage && (name === "src" || name === "alt");
       const isLanguage = child.tagName === "CODE" && name === "class" && /^language-\w+$/.test(value);
-      if (!isLink && !isOfImage && !isLanguage && !(child.tagName === "SPAN" && name === "class")) child.removeAttribute(name);
+      if (!isLink && !isImageAttribute && !isLanguage && !(child.tagName === "SPAN" && name === "class")) child.removeAttribute(name);
     }
     if (child.tagName === "A") {
       child.setAttribute("target", "_blank");

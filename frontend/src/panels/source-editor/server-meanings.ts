@@ -27,9 +27,9 @@ export function decodeTokens(doc: Text, data: readonly number[], { tokenTypes, t
   const ranges: TokenRange[] = [];
   let [line, character] = [0, 0];
   for (let index = 0; index + FIELDS_PER_TOKEN <= data.length; index += FIELDS_PER_TOKEN) {
-    const [lines = 0, characters = 0, length = 0, type = 0, modifiers = 0] = data.slice(index, index + FIELDS_PER_TOKEN);
-    character = lines === 0 ? character + characters : characters;
-    line += lines;
+    const [lineOffset = 0, characterOffset = 0, length = 0, type = 0, modifiers = 0] = data.slice(index, index + FIELDS_PER_TOKEN);
+    character = lineOffset === 0 ? character + characterOffset : characterOffset;
+    line += lineOffset;
     const names = [tokenTypes[type] ?? "", ...tokenModifiers.filter((_, bit) => (modifiers >> bit) & 1)];
     const start = offsetOf(doc, { line, character });
     const end = offsetOf(doc, { line, character: character + length });
@@ -39,12 +39,12 @@ export function decodeTokens(doc: Text, data: readonly number[], { tokenTypes, t
 }
 
 /** Returns a color as `#rrggbb`, without its alpha. */
-export function hexOf({ red, green, blue }: Color): string {
-  return `#${[red, green, blue].map((part) => Math.round(Math.min(Math.max(part, 0), 1) * 255).toString(16).padStart(2, "0")).join("")}`;
+export function toHex({ red, green, blue }: Color): string {
+  return `#${[red, green, blue].map((channel) => Math.round(Math.min(Math.max(channel, 0), 1) * 255).toString(16).padStart(2, "0")).join("")}`;
 }
 
 /** Returns the color of `#rrggbb`, opaque. */
-export function colorOf(hex: string): Color {
+export function parseHex(hex: string): Color {
   const [red = 0, green = 0, blue = 0] = [1, 3, 5].map((start) => Math.round((parseInt(hex.slice(start, start + 2), 16) / 255) * 1000) / 1000);
   return { red, green, blue, alpha: 1 };
 }

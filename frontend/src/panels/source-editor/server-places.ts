@@ -14,13 +14,13 @@ export function offsetOf(text: Text, { line, character }: ServerRange["start"]):
 }
 
 /** Returns the place of a position in a text. */
-export function placeOf(text: Text, position: number): ServerRange["start"] {
+export function serverPositionOf(text: Text, position: number): ServerRange["start"] {
   const line = text.lineAt(position);
   return { line: line.number - 1, character: position - line.from };
 }
 
 /** Returns the text of a range. */
-export function rangeText(text: Text, { start, end }: ServerRange): string {
+export function textOfRange(text: Text, { start, end }: ServerRange): string {
   return text.sliceString(offsetOf(text, start), offsetOf(text, end));
 }
 

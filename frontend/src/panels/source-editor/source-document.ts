@@ -1,6 +1,6 @@
 import { isolateHistory } from "@codemirror/commands";
 import { Annotation, ChangeSet, type EditorState, type Text, type Transaction, type TransactionSpec } from "@codemirror/state";
-import { mergeChanges, findSmallestChange, textOf } from "./document-changes";
+import { mergeChanges, findSmallestChange, toText } from "./document-changes";
 
 /** Marks a transaction that brings a change of the file into the editor. */
 const fromDisk = Annotation.define<ChangeSet>();
@@ -19,13 +19,13 @@ class FormerText {
     this.changes = ChangeSet.empty(text.length);
   }
 
-  /** Returns the place in the present text of a place in the former one. */
-  placeNow(position: number): number {
+  /** Returns the position in the current text that corresponds to one in the former text. */
+  toCurrentPosition(position: number): number {
     return this.changes.mapPos(Math.min(position, this.text.length));
   }
 
-  /** Returns the place in the former text of a place in the present one. */
-  placeThen(position: number): number {
+  /** Returns the position in the former text that corresponds to one in the current text. */
+  toFormerPosition(position: number): number {
     return this.changes.invertedDesc.mapPos(position);
   }
 }
@@ -38,7 +38,7 @@ export class SourceDocument {
   /** Whether the file does not exist yet; saving creates it. */
   isNew = false;
   /** The position of the first visible line when the document was last shown. */
-  scrolledTo = 0;
+  scrollPosition = 0;
   /** The text that the shown description was read from; null for the text on the disk. */
   describedText: FormerText | null = null;
   private diskText: Text;
@@ -80,37 +80,37 @@ export class SourceDocument {
   currentLineOf(line: number): number {
     const text = this.describedText?.text ?? this.diskText;
     const position = text.line(Math.max(1, Math.min(line, text.lines))).from;
-    return this.describedText ? this.describedText.placeNow(position) : this.unsavedChanges.mapPos(position);
+    return this.describedText ? this.describedText.toCurrentPosition(position) : this.unsavedChanges.mapPos(position);
   }
 
   /** Returns the line of the shown description that a position was on; 1-based. */
   describedLineOf(position: number): number {
     const text = this.describedText?.text ?? this.diskText;
-    const formerPosition = this.describedText ? this.describedText.placeThen(position) : this.unsavedChanges.invertedDesc.mapPos(position);
+    const formerPosition = this.describedText ? this.describedText.toFormerPosition(position) : this.unsavedChanges.invertedDesc.mapPos(position);
     return text.lineAt(Math.min(formerPosition, text.length)).number;
   }
 
   /** Records that the text is sent to be shown in the scene. */
-  beginShowing(number: number): void {
+  recordSent(number: number): void {
     this.sentTexts.set(number, new FormerText(this.state.doc));
   }
 
   /** Records that the scene shows a text, or cannot show it. */
-  endShowing(number: number, isShown: boolean): void {
+  recordShown(number: number, isShown: boolean): void {
     if (!isShown) return;
     this.describedText = this.sentTexts.get(number) ?? this.describedText;
-    for (const older of this.sentTexts.keys()) if (older < number) this.sentTexts.delete(older);
+    for (const olderNumber of this.sentTexts.keys()) if (olderNumber < number) this.sentTexts.delete(olderNumber);
   }
 
   /**
-   * Returns the transaction that brings an edit of the robot into the text; null if the text has changed at the same place
-   * meanwhile.
+   * Returns the transaction that brings an edit of the robot into the text; null if the text has changed at the same
+   * place meanwhile.
    *
-   * @param base - the number of the text that was edited; 0 for the one on the disk.
+   * @param baseNumber - the number of the text that was edited; 0 for the one on the disk.
    */
-  onRobotEdited(content: string, base: number): TransactionSpec | null {
-    const formerText = this.sentTexts.get(base);
-    const edit = findSmallestChange(formerText?.text ?? this.diskText, textOf(content));
+  onRobotEdited(content: string, baseNumber: number): TransactionSpec | null {
+    const formerText = this.sentTexts.get(baseNumber);
+    const edit = findSmallestChange(formerText?.text ?? this.diskText, toText(content));
     const mergedChanges = mergeChanges(edit, formerText?.changes ?? this.unsavedChanges);
     return mergedChanges && { changes: mergedChanges.edit, annotations: [isolateHistory.of("full")], userEvent: "robot" };
   }
@@ -122,24 +122,26 @@ export class SourceDocument {
     const { changes } = transaction;
     this.unsavedChanges = transaction.annotation(fromDisk) ?? this.unsavedChanges.compose(changes);
     if (this.writing) this.writing.changes = this.writing.changes.compose(changes);
-    for (const formerText of new Set([...this.sentTexts.values(), ...(this.describedText ? [this.describedText] : [])])) formerText.changes = formerText.changes.compose(changes);
+    const formerTexts = new Set(this.sentTexts.values());
+    if (this.describedText) formerTexts.add(this.describedText);
+    for (const formerText of formerTexts) formerText.changes = formerText.changes.compose(changes);
   }
 
   /**
-   * Takes over a new text of the file; returns the transaction that brings it into the editor, or null if there is none
+   * Adopts a new text of the file; returns the transaction that brings it into the editor, or null if there is none
    * or there is a conflict.
    */
   onDiskChanged(content: string, version: number): TransactionSpec | null {
-    const text = textOf(content);
+    const text = toText(content);
     this.version = version;
     this.isNew = false;
     if (text.eq(this.state.doc)) {
       this.rebase(text);
       return null;
     }
-    const disk = findSmallestChange(this.diskText, text);
-    if (disk.empty && this.conflict === null) return null;
-    const mergedChanges = mergeChanges(disk, this.unsavedChanges);
+    const diskChange = findSmallestChange(this.diskText, text);
+    if (diskChange.empty && this.conflict === null) return null;
+    const mergedChanges = mergeChanges(diskChange, this.unsavedChanges);
     if (mergedChanges === null) {
       this.conflict = { text, version };
       return null;
@@ -154,7 +156,9 @@ export class SourceDocument {
     if (this.conflict) this.rebase(this.conflict.text);
   }
 
-  /** Resolves a conflict in favor of the text on the disk; undoing the returned transaction brings back the edited text. */
+  /**
+   * Resolves a conflict in favor of the text on the disk; undoing the returned transaction brings back the edited text.
+   */
   takeDisk(): TransactionSpec | null {
     const { conflict } = this;
     if (!conflict) return null;

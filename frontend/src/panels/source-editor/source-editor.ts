@@ -3,8 +3,8 @@ import { nextDiagnostic, openLintPanel, previousDiagnostic, diagnosticCount } fr
 import { formatDocument } from "@codemirror/lsp-client";
 import { EditorState, type Transaction, type TransactionSpec } from "@codemirror/state";
 import { EditorView, keymap } from "@codemirror/view";
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { UnsavedTextEdited } from "../../protocol";
 import { Signal } from "../../signal";
 import type { Session } from "../../state/session";
@@ -17,7 +17,7 @@ import { FileTree } from "./file-tree";
 import { showFindings } from "./findings";
 import { LanguageService } from "./language-service";
 import { LiveTexts } from "./live-texts";
-import { inspectMarks, marksOf } from "./marks";
+import { inspectMarks, createMarkEffect } from "./marks";
 import { Navigation } from "./navigation";
 import { PlaceList } from "./place-list";
 import { renameAtCursor } from "./rename";
@@ -28,10 +28,10 @@ import { messageOf } from "./workspace-edit";
 import "../../styles/source-editor.css";
 
 /** The line at the cursor is reported this time after the last key, ms. */
-const LINE_MS = 200;
+const CURSOR_REPORT_DELAY_MS = 200;
 
 /** The minimum width, px, at which the editor of a workspace lists the files without a request. */
-const TREE_WIDTH = 480;
+const MIN_TREE_WIDTH_PX = 480;
 
 /** The editor of the source files: one view, and the documents that it can show. */
 export class SourceEditor implements Documents {
@@ -50,20 +50,20 @@ export class SourceEditor implements Documents {
   private readonly tree: FileTree;
   private readonly notice = h("div", { class: "editor-notice", role: "alert" });
   private readonly status = h("span", { class: "editor-status", role: "status" });
-  private readonly scene = h("span", { class: "editor-scene", role: "status" });
-  private readonly save: HTMLButtonElement;
-  private readonly list: HTMLButtonElement;
+  private readonly sceneStatus = h("span", { class: "editor-scene", role: "status" });
+  private readonly saveButton: HTMLButtonElement;
+  private readonly findingsButton: HTMLButtonElement;
   private requestedFile = "";
   private lineTimer: ReturnType<typeof setTimeout> | undefined;
   /** The document whose text was changed last. */
-  private changedLast: SourceDocument | null = null;
+  private lastChanged: SourceDocument | null = null;
 
   /**
-   * @param onLine - called with the file and the line of its description to which the user moved the cursor.
+   * @param onCursorMoved - called with the file and the line of its description to which the user moved the cursor.
    */
   constructor(
     private readonly session: Session,
-    private readonly onLine: (file: string, line: number) => void,
+    private readonly onCursorMoved: (file: string, line: number) => void,
   ) {
     const texts = strings.sourceEditor;
     const { connection } = session;
@@ -73,35 +73,35 @@ export class SourceEditor implements Documents {
     this.actions = new CodeActions(this.service.client, this, (uri) => this.findingsByUri.get(uri) ?? [], showMessage);
     this.navigation = new Navigation(this.service.client, this, this.places, showMessage);
     this.liveTexts = new LiveTexts(connection, this, () => this.changed.emit());
-    this.save = button(texts.saveHint, () => this.saveAll(), "tool framed editor-save", icon("save"), texts.save);
-    this.list = button(texts.findingsHint, () => openLintPanel(this.view), "tool framed", texts.findings(0));
+    this.saveButton = createButton(texts.saveHint, () => this.saveAll(), "tool framed editor-save", createIcon("save"), texts.save);
+    this.findingsButton = createButton(texts.findingsHint, () => openLintPanel(this.view), "tool framed", texts.findings(0));
     this.tree = new FileTree(connection, (path) => void this.show(path), (path) => void this.createAndShow(path));
-    const files = button(texts.filesHint, () => this.tree.toggle(), "tool framed", icon("tree"), texts.files);
-    const format = button(texts.formatHint, () => formatDocument(this.view), "tool framed", texts.format);
-    const actions = button(texts.actionsHint, () => this.actions.open(this.view), "tool framed", icon("bulb"), texts.actions);
-    const symbols = button(texts.symbolsHint, () => this.searchSymbols(), "tool framed", texts.symbols);
-    const buttons = [files, symbols, this.save, actions, format, this.list];
-    const bar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: texts.label } }, ...buttons, this.scene, this.status);
-    this.tree.shownChanged.on((isShown) => files.setAttribute("aria-expanded", String(isShown)));
+    const filesButton = createButton(texts.filesHint, () => this.tree.toggle(), "tool framed", createIcon("tree"), texts.files);
+    const formatButton = createButton(texts.formatHint, () => formatDocument(this.view), "tool framed", texts.format);
+    const actionsButton = createButton(texts.actionsHint, () => this.actions.open(this.view), "tool framed", createIcon("bulb"), texts.actions);
+    const symbolsButton = createButton(texts.symbolsHint, () => this.searchSymbols(), "tool framed", texts.symbols);
+    const buttons = [filesButton, symbolsButton, this.saveButton, actionsButton, formatButton, this.findingsButton];
+    const toolbar = h("div", { class: "editor-bar", role: "toolbar", aria: { label: texts.label } }, ...buttons, this.sceneStatus, this.status);
+    this.tree.shownChanged.on((isShown) => filesButton.setAttribute("aria-expanded", String(isShown)));
     const withoutFile = [EditorView.editable.of(false), EditorView.contentAttributes.of({ "aria-label": texts.label })];
     this.view = new EditorView({ extensions: withoutFile, dispatchTransactions: (transactions, view) => this.dispatch(transactions, view) });
     const body = h("div", { class: "editor-body" }, this.tree.element, this.view.dom);
-    this.element = h("div", { class: "source-editor" }, bar, this.notice, body, this.places.element);
+    this.element = h("div", { class: "source-editor" }, toolbar, this.notice, body, this.places.element);
     // The page's own keys would change the scene or save the configuration.
     this.element.addEventListener("keydown", (event) => event.key !== "F11" && event.stopPropagation());
     this.files = new SourceFiles(session, {
-      stateOf: (path, uri, text, isReadOnly) => this.stateOf(path, uri, text, isReadOnly),
+      createState: (path, uri, text, isReadOnly) => this.createState(path, uri, text, isReadOnly),
       change: (document, spec) => this.change(document, spec),
       onWorkspaceOpened: (folder, uri) => {
         this.service.connect(uri);
         this.tree.setFolder(folder);
         this.status.textContent = "";
-        this.liveTexts.restart();
+        this.liveTexts.resendAll();
       },
       onAdded: (document) => this.service.add(document),
       onWritten: (document, isOwn) => this.onWritten(document, isOwn),
       onCreated: () => this.tree.reload(),
-      tell: showMessage,
+      showMessage,
     });
     this.files.changed.on(() => this.changed.emit());
     this.changed.on(coalesce(() => this.refresh()));
@@ -145,13 +145,13 @@ export class SourceEditor implements Documents {
   openWorkspace(folder: string): void {
     this.files.openWorkspace(folder);
     requestAnimationFrame(() => {
-      if (this.tree.element.hidden && this.element.clientWidth >= TREE_WIDTH) this.tree.toggle();
+      if (this.tree.element.hidden && this.element.clientWidth >= MIN_TREE_WIDTH_PX) this.tree.toggle();
     });
   }
 
   /** Shows a file, or an empty text that creates it when it is saved. */
-  async showOrBegin(path: string): Promise<void> {
-    await this.show(path, (file) => this.files.loadOrBegin(file));
+  async showOrCreate(path: string): Promise<void> {
+    await this.show(path, (file) => this.files.loadOrCreate(file));
   }
 
   load(path: string): Promise<SourceDocument | null> {
@@ -167,8 +167,8 @@ export class SourceEditor implements Documents {
     else this.record(document, document.state.update(spec));
   }
 
-  onFindings(uri: string, onFindings: readonly ServerFinding[]): void {
-    this.findingsByUri.set(uri, onFindings);
+  onFindings(uri: string, findings: readonly ServerFinding[]): void {
+    this.findingsByUri.set(uri, findings);
     if (this.shownDocument?.uri === uri) this.showFindings(this.shownDocument);
     this.changed.emit();
   }
@@ -188,10 +188,10 @@ export class SourceEditor implements Documents {
   }
 
   /** Marks lines of the shown file, and scrolls to one of them; lines are those of the shown description. */
-  mark(highlights: readonly Highlight[], line: number | null): void {
+  showHighlights(highlights: readonly Highlight[], line: number | null): void {
     const document = this.shownDocument;
     if (!document) return;
-    this.view.dispatch({ effects: [marksOf(document, highlights)] });
+    this.view.dispatch({ effects: [createMarkEffect(document, highlights)] });
     if (line === null || line < 1) return;
     const currentLine = document.currentLineOf(line);
     this.navigation.recordPosition();
@@ -200,7 +200,7 @@ export class SourceEditor implements Documents {
 
   /** The text that Undo and Redo of the robot's edits change while it is not saved; null if all texts are saved. */
   get history(): { canUndo: boolean; canRedo: boolean; undo: () => void; redo: () => void } | null {
-    const document = this.changedLast;
+    const document = this.lastChanged;
     if (!document?.isUnsaved) return null;
     const dispatch = (transaction: Transaction): void => this.apply(document, transaction);
     const [canUndo, canRedo] = [undoDepth(document.state) > 0, redoDepth(document.state) > 0];
@@ -248,7 +248,7 @@ export class SourceEditor implements Documents {
     }
   }
 
-  private stateOf(path: string, uri: string, doc: string, isReadOnly: boolean): EditorState {
+  private createState(path: string, uri: string, doc: string, isReadOnly: boolean): EditorState {
     const { navigation, actions } = this;
     const keys = keymap.of([
       { key: "F2", run: (view) => renameAtCursor(view, this.service, this, (message) => this.showMessage(message)), preventDefault: true },
@@ -278,18 +278,18 @@ export class SourceEditor implements Documents {
     clearTimeout(this.lineTimer);
     this.lineTimer = setTimeout(() => {
       const { main } = this.view.state.selection;
-      if (this.shownDocument && main.empty) this.onLine(this.shownDocument.path, this.shownDocument.describedLineOf(main.head));
-    }, LINE_MS);
+      if (this.shownDocument && main.empty) this.onCursorMoved(this.shownDocument.path, this.shownDocument.describedLineOf(main.head));
+    }, CURSOR_REPORT_DELAY_MS);
   }
 
   private displayDocument(document: SourceDocument): void {
     this.service.client.sync();
     this.navigation.recordPosition();
-    if (this.shownDocument) this.shownDocument.scrolledTo = this.view.elementAtHeight(this.view.scrollDOM.scrollTop).from;
+    if (this.shownDocument) this.shownDocument.scrollPosition = this.view.elementAtHeight(this.view.scrollDOM.scrollTop).from;
     this.shownDocument = document;
     this.view.setState(document.state);
     this.showFindings(document);
-    const position = Math.min(document.scrolledTo, document.state.doc.length);
+    const position = Math.min(document.scrollPosition, document.state.doc.length);
     this.view.dispatch({ effects: EditorView.scrollIntoView(position, { y: "start" }) });
     this.status.textContent = "";
     this.tree.setCurrent(document.path);
@@ -297,8 +297,8 @@ export class SourceEditor implements Documents {
   }
 
   private showFindings({ uri, readOnlyReason }: SourceDocument): void {
-    const fix = readOnlyReason === "" ? (view: EditorView, range: { from: number; to: number }) => void this.actions.open(view, range) : null;
-    this.view.dispatch(showFindings(this.view.state, this.findingsByUri.get(uri) ?? [], fix));
+    const openFix = readOnlyReason === "" ? (view: EditorView, range: { from: number; to: number }) => void this.actions.open(view, range) : null;
+    this.view.dispatch(showFindings(this.view.state, this.findingsByUri.get(uri) ?? [], openFix));
   }
 
   private apply(document: SourceDocument, transaction: Transaction): void {
@@ -316,7 +316,7 @@ export class SourceEditor implements Documents {
     if (!transaction.docChanged) return;
     this.service.record(document, transaction.changes);
     this.navigation.record(document, transaction.changes);
-    this.changedLast = document;
+    this.lastChanged = document;
     this.liveTexts.scheduleSending();
     this.changed.emit();
   }
@@ -329,16 +329,16 @@ export class SourceEditor implements Documents {
     const texts = strings.sourceEditor;
     const { shownDocument } = this;
     const { unsavedDocuments } = this.files;
-    this.save.disabled = unsavedDocuments.every(({ conflict }) => conflict !== null);
+    this.saveButton.disabled = unsavedDocuments.every(({ conflict }) => conflict !== null);
     this.element.classList.toggle("unsaved", unsavedDocuments.length > 0);
-    this.save.lastChild?.replaceWith(unsavedDocuments.length > 1 ? texts.saveMany(unsavedDocuments.length) : texts.save);
+    this.saveButton.lastChild?.replaceWith(unsavedDocuments.length > 1 ? texts.saveMany(unsavedDocuments.length) : texts.save);
     const count = diagnosticCount(this.view.state);
-    this.list.replaceChildren(texts.findings(count));
-    this.list.disabled = count === 0;
+    this.findingsButton.replaceChildren(texts.findings(count));
+    this.findingsButton.disabled = count === 0;
     const { outcome } = this.liveTexts;
-    const scene = outcome === null ? "" : texts.scene[outcome];
-    if (this.scene.textContent !== scene) this.scene.textContent = scene;
-    this.scene.classList.toggle("errors", outcome === "errors");
+    const sceneText = outcome === null ? "" : texts.scene[outcome];
+    if (this.sceneStatus.textContent !== sceneText) this.sceneStatus.textContent = sceneText;
+    this.sceneStatus.classList.toggle("errors", outcome === "errors");
     this.showNotice(shownDocument);
     this.tree.setUnsaved(unsavedDocuments.map(({ path }) => path));
     this.session.editing.setTextHistory(this.history);
@@ -353,17 +353,17 @@ export class SourceEditor implements Documents {
       this.notice.replaceChildren(document.readOnlyReason || texts.isNew);
       return;
     }
-    const settle = (spec: TransactionSpec | null): void => {
+    const finish = (spec: TransactionSpec | null): void => {
       if (spec) this.change(document, spec);
       this.changed.emit();
       this.view.focus();
     };
-    const keep = (): void => {
+    const keepEdited = (): void => {
       document.keepMine();
-      settle(null);
+      finish(null);
     };
-    const keepButton = button(texts.keepMineHint, keep, "tool framed", texts.keepMine);
-    const diskButton = button(texts.takeDiskHint, () => settle(document.takeDisk()), "tool framed", texts.takeDisk);
+    const keepButton = createButton(texts.keepMineHint, keepEdited, "tool framed", texts.keepMine);
+    const diskButton = createButton(texts.takeDiskHint, () => finish(document.takeDisk()), "tool framed", texts.takeDisk);
     this.notice.replaceChildren(h("span", {}, texts.conflict), keepButton, diskButton);
   }
 }

@@ -3,17 +3,17 @@ import type { SourceFile, SourceFileWritten } from "../../protocol";
 import { Signal } from "../../signal";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
-import { nameOf } from "../place";
+import { fileNameOf } from "../place";
 import { isWithinMessageSize } from "./message-size";
 import { SourceDocument } from "./source-document";
 
 const MAX_RESTARTS = 3;
-const RESTART_MS = 1000;
+const RESTART_DELAY_MS = 1000;
 
 /** What the files need of the editor. */
 interface FilesHost {
   /** Returns the state of a view of a new document. */
-  stateOf(path: string, uri: string, text: string, isReadOnly: boolean): EditorState;
+  createState(path: string, uri: string, text: string, isReadOnly: boolean): EditorState;
   change(document: SourceDocument, spec: TransactionSpec): void;
   /** The workspace was opened, for the first time or again. */
   onWorkspaceOpened(folder: string, uri: string): void;
@@ -21,7 +21,7 @@ interface FilesHost {
   /** The file of a document was written by the editor, or by another program. */
   onWritten(document: SourceDocument, isOwn: boolean): void;
   onCreated(): void;
-  tell(message: string): void;
+  showMessage(message: string): void;
 }
 
 /** The documents of the editor, which are read from the server and written there. */
@@ -32,15 +32,15 @@ export class SourceFiles {
   unavailableReason: string | null = null;
   private readonly documents = new Map<string, SourceDocument>();
   private readonly waitingCallbacks = new Map<string, ((document: SourceDocument | null) => void)[]>();
-  private readonly writing = new Map<number, SourceDocument>();
+  private readonly pendingWrites = new Map<number, SourceDocument>();
   /** The files that are opened even if they do not exist. */
-  private readonly mayBeNew = new Set<string>();
-  private readonly creating = new Map<number, { resolve: () => void; reject: (reason: Error) => void }>();
+  private readonly creatablePaths = new Set<string>();
+  private readonly pendingCreations = new Map<number, { resolve: () => void; reject: (reason: Error) => void }>();
   /** The file whose workspace is edited. */
-  private main = "";
+  private mainFile = "";
   private isOpen = false;
-  private restarts = 0;
-  private number = 0;
+  private restartCount = 0;
+  private lastNumber = 0;
 
   constructor(
     private readonly session: Session,
@@ -59,7 +59,7 @@ export class SourceFiles {
 
   /** Opens a workspace, whose files can then be loaded. */
   openWorkspace(folder: string): void {
-    this.main = folder;
+    this.mainFile = folder;
     if (!this.isOpen) this.requestWorkspace();
   }
 
@@ -67,7 +67,7 @@ export class SourceFiles {
   load(path: string): Promise<SourceDocument | null> {
     const document = this.documents.get(path);
     if (document) return Promise.resolve(document);
-    if (this.unavailableReason !== "") this.main = path;
+    if (this.unavailableReason !== "") this.mainFile = path;
     return new Promise((resolve) => {
       const callbacks = this.waitingCallbacks.get(path);
       if (callbacks) callbacks.push(resolve);
@@ -80,17 +80,17 @@ export class SourceFiles {
   }
 
   /** Opens a file, or an empty text that creates it when it is saved; null if there can be no such file. */
-  loadOrBegin(path: string): Promise<SourceDocument | null> {
-    this.mayBeNew.add(path);
+  loadOrCreate(path: string): Promise<SourceDocument | null> {
+    this.creatablePaths.add(path);
     return this.load(path);
   }
 
   /** Creates an empty file, and rejects with the reason if it cannot be created. */
   create(path: string): Promise<void> {
     return new Promise((resolve, reject) => {
-      this.number += 1;
-      this.creating.set(this.number, { resolve, reject });
-      this.session.connection.send({ type: "create_source_file", number: this.number, path });
+      this.lastNumber += 1;
+      this.pendingCreations.set(this.lastNumber, { resolve, reject });
+      this.session.connection.send({ type: "create_source_file", number: this.lastNumber, path });
     });
   }
 
@@ -99,7 +99,7 @@ export class SourceFiles {
     const texts = strings.sourceEditor;
     const { connection } = this.session;
     if (connection.state !== "connected") {
-      this.host.tell(texts.disconnected);
+      this.host.showMessage(texts.disconnected);
       return;
     }
     for (const document of this.unsavedDocuments) {
@@ -107,12 +107,12 @@ export class SourceFiles {
       const text = document.beginWriting();
       if (!isWithinMessageSize(text)) {
         document.endWriting(null);
-        this.host.tell(texts.tooLong(nameOf(document.path)));
+        this.host.showMessage(texts.tooLong(fileNameOf(document.path)));
         continue;
       }
-      this.number += 1;
-      this.writing.set(this.number, document);
-      connection.send({ type: "write_source_file", number: this.number, path: document.path, version: document.version, text });
+      this.lastNumber += 1;
+      this.pendingWrites.set(this.lastNumber, document);
+      connection.send({ type: "write_source_file", number: this.lastNumber, path: document.path, version: document.version, text });
     }
   }
 
@@ -127,9 +127,9 @@ export class SourceFiles {
     description.arrived.on(() => this.reopen());
     connection.on("language_server_ended", () => {
       this.isOpen = false;
-      this.restarts += 1;
-      this.host.tell(strings.sourceEditor.ended);
-      if (this.restarts <= MAX_RESTARTS) setTimeout(() => this.reopen(), RESTART_MS);
+      this.restartCount += 1;
+      this.host.showMessage(strings.sourceEditor.ended);
+      if (this.restartCount <= MAX_RESTARTS) setTimeout(() => this.reopen(), RESTART_DELAY_MS);
     });
     window.addEventListener("beforeunload", (event) => this.unsavedDocuments.length > 0 && event.preventDefault());
   }
@@ -137,19 +137,19 @@ export class SourceFiles {
   /** Ends the pending requests to the previous program, which get no answers. */
   private onProgramStarted(): void {
     this.isOpen = false;
-    for (const document of this.writing.values()) document.endWriting(null);
-    for (const { reject } of this.creating.values()) reject(new Error(strings.sourceEditor.disconnected));
-    this.writing.clear();
-    this.creating.clear();
+    for (const document of this.pendingWrites.values()) document.endWriting(null);
+    for (const { reject } of this.pendingCreations.values()) reject(new Error(strings.sourceEditor.disconnected));
+    this.pendingWrites.clear();
+    this.pendingCreations.clear();
   }
 
   /** Opens the workspace again, after the program was restarted. */
   private reopen(): void {
-    if (!this.isOpen && this.main !== "") this.requestWorkspace();
+    if (!this.isOpen && this.mainFile !== "") this.requestWorkspace();
   }
 
   private requestWorkspace(): void {
-    this.session.connection.send({ type: "open_editor", file: this.main });
+    this.session.connection.send({ type: "open_editor", file: this.mainFile });
   }
 
   private onOpened(folder: string, uri: string, unavailableReason: string): void {
@@ -158,7 +158,7 @@ export class SourceFiles {
     if (this.isOpen) {
       for (const path of [...this.documents.keys(), ...this.waitingCallbacks.keys()]) this.session.connection.send({ type: "request_source_file", path });
       this.host.onWorkspaceOpened(folder, uri);
-    } else for (const path of [...this.waitingCallbacks.keys()]) this.settle(path, null);
+    } else for (const path of [...this.waitingCallbacks.keys()]) this.resolveWaiting(path, null);
     this.changed.emit();
   }
 
@@ -170,30 +170,30 @@ export class SourceFiles {
       const spec = text === null ? null : document.onDiskChanged(text, version);
       if (spec) this.host.change(document, spec);
       this.host.onWritten(document, false);
-    } else if (text !== null || (isNew && this.mayBeNew.has(path))) {
+    } else if (text !== null || (isNew && this.creatablePaths.has(path))) {
       const readOnlyReason = isNew ? "" : refusal_reason;
-      document = new SourceDocument(path, uri, version, this.host.stateOf(path, uri, text ?? "", readOnlyReason !== ""));
+      document = new SourceDocument(path, uri, version, this.host.createState(path, uri, text ?? "", readOnlyReason !== ""));
       [document.readOnlyReason, document.isNew] = [readOnlyReason, isNew];
       this.documents.set(path, document);
       this.host.onAdded(document);
-    } else this.host.tell(refusal_reason);
-    this.settle(path, document ?? null);
+    } else this.host.showMessage(refusal_reason);
+    this.resolveWaiting(path, document ?? null);
     this.changed.emit();
   }
 
   private onWritten({ number, path, version, refusal }: SourceFileWritten): void {
-    const [document, createdFile] = [this.writing.get(number), this.creating.get(number)];
-    this.writing.delete(number);
-    this.creating.delete(number);
+    const [document, createdFile] = [this.pendingWrites.get(number), this.pendingCreations.get(number)];
+    this.pendingWrites.delete(number);
+    this.pendingCreations.delete(number);
     const wasNew = document?.isNew === true;
     document?.endWriting(refusal === null ? version : null);
     const reason = refusal ? [refusal.message, ...refusal.hints].join(" ") : "";
     if (refusal && createdFile) createdFile.reject(new Error(reason));
-    else if (refusal) this.host.tell(reason);
+    else if (refusal) this.host.showMessage(reason);
     else if (document) {
       this.host.onWritten(document, true);
       if (wasNew) this.host.onCreated();
-      this.host.tell(strings.sourceEditor.saved(nameOf(path)));
+      this.host.showMessage(strings.sourceEditor.saved(fileNameOf(path)));
     } else {
       this.host.onCreated();
       createdFile?.resolve();
@@ -201,7 +201,7 @@ export class SourceFiles {
     this.changed.emit();
   }
 
-  private settle(path: string, document: SourceDocument | null): void {
+  private resolveWaiting(path: string, document: SourceDocument | null): void {
     const callbacks = this.waitingCallbacks.get(path) ?? [];
     this.waitingCallbacks.delete(path);
     for (const resolve of callbacks) resolve(document);

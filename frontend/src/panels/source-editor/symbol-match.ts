@@ -1,5 +1,5 @@
 /** Whether a name contains the characters of a query in their order; case is ignored. */
-export function matches(query: string, name: string): boolean {
+export function matchesQuery(query: string, name: string): boolean {
   const characters = name.toLowerCase();
   let index = 0;
   for (const character of query.toLowerCase()) {

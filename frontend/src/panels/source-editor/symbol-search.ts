@@ -1,12 +1,12 @@
 import type { LSPClient } from "@codemirror/lsp-client";
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
 import { shortenPath } from "../place";
 import type { Documents } from "./documents";
 import type { ServerLocation } from "./navigation";
 import { pathOf, type ServerRange } from "./server-places";
-import { matches } from "./symbol-match";
+import { matchesQuery } from "./symbol-match";
 import { messageOf } from "./workspace-edit";
 
 interface DocumentSymbol {
@@ -29,13 +29,13 @@ interface ListedSymbol {
   readonly location: ServerLocation;
 }
 
-const SEARCH_MS = 120;
-const MAX_LISTED = 300;
-let searches = 0;
+const SEARCH_DELAY_MS = 120;
+const MAX_LISTED_SYMBOLS = 300;
+let searchCount = 0;
 
 /** The search for names in the shown file, or in the whole workspace. */
 export class SymbolSearch {
-  private readonly id = `symbols-${String(++searches)}`;
+  private readonly id = `symbols-${String(++searchCount)}`;
   private readonly field = h("input", { class: "field wide", role: "combobox" });
   private readonly list = h("div", { class: "symbol-list", role: "listbox" });
   private readonly status = h("p", { class: "hint", role: "status" });
@@ -43,7 +43,7 @@ export class SymbolSearch {
   private readonly dialog: Dialog;
   private ofFile: readonly ListedSymbol[] = [];
   private listedSymbols: readonly ListedSymbol[] = [];
-  private isWide = false;
+  private isWorkspaceWide = false;
   private chosenIndex = 0;
   private number = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -56,8 +56,8 @@ export class SymbolSearch {
   ) {
     const texts = strings.sourceEditor;
     this.scopes = [
-      button(texts.symbolsOfFile, () => this.setWide(false), "tool framed", texts.symbolsOfFile),
-      button(texts.symbolsOfAll, () => this.setWide(true), "tool framed", texts.symbolsOfAll),
+      createButton(texts.symbolsOfFile, () => this.setWorkspaceWide(false), "tool framed", texts.symbolsOfFile),
+      createButton(texts.symbolsOfAll, () => this.setWorkspaceWide(true), "tool framed", texts.symbolsOfAll),
     ];
     const attributes = { "aria-label": texts.symbolName, "aria-controls": this.id, "aria-expanded": "true", "aria-autocomplete": "list", autocomplete: "off" };
     for (const [name, value] of Object.entries(attributes)) this.field.setAttribute(name, value);
@@ -69,13 +69,13 @@ export class SymbolSearch {
       if (symbol) open(symbol.location);
     };
     const scopes = h("div", { class: "symbol-scopes", role: "group", aria: { label: texts.symbolsIn } }, ...this.scopes);
-    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: openSelected, isMain: true }], "symbol-search");
+    this.dialog = new Dialog(texts.symbols, [scopes, this.field, this.list, this.status], [{ label: strings.shell.cancel }, { label: texts.goTo, run: openSelected, isPrimary: true }], "symbol-search");
     this.field.addEventListener("input", () => this.searchLater());
     this.dialog.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     this.list.addEventListener("click", ({ target }) => {
       const option = target instanceof Element ? target.closest<HTMLElement>("[role=option]") : null;
       if (!option) return;
-      this.choose([...this.list.children].indexOf(option));
+      this.selectOption([...this.list.children].indexOf(option));
       openSelected();
       this.dialog.close();
     });
@@ -88,55 +88,55 @@ export class SymbolSearch {
     this.dialog.open(this.field);
     this.client.sync();
     const symbols = await this.client.request<object, DocumentSymbol[] | null>("textDocument/documentSymbol", { textDocument: { uri: shownDocument.uri } });
-    this.ofFile = flatten(symbols ?? [], shownDocument.uri, 0);
-    this.setWide(false);
+    this.ofFile = flattenSymbols(symbols ?? [], shownDocument.uri, 0);
+    this.setWorkspaceWide(false);
   }
 
-  private setWide(isWide: boolean): void {
-    this.isWide = isWide;
-    for (const [index, scope] of this.scopes.entries()) scope.setAttribute("aria-pressed", String((index === 1) === isWide));
+  private setWorkspaceWide(isWorkspaceWide: boolean): void {
+    this.isWorkspaceWide = isWorkspaceWide;
+    for (const [index, scope] of this.scopes.entries()) scope.setAttribute("aria-pressed", String((index === 1) === isWorkspaceWide));
     void this.search();
     this.field.focus();
   }
 
   private searchLater(): void {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.search(), this.isWide ? SEARCH_MS : 0);
+    this.timer = setTimeout(() => void this.search(), this.isWorkspaceWide ? SEARCH_DELAY_MS : 0);
   }
 
   private async search(): Promise<void> {
     const query = this.field.value.trim();
     this.number += 1;
-    const { number } = this;
-    if (!this.isWide) {
-      const fileSymbols = this.ofFile.filter(({ name, detail }) => matches(query, name) || matches(query, detail));
-      this.show(query === "" ? fileSymbols : fileSymbols.map((symbol) => ({ ...symbol, depth: 0 })));
+    const { number: lastNumber } = this;
+    if (!this.isWorkspaceWide) {
+      const matchingSymbols = this.ofFile.filter(({ name, detail }) => matchesQuery(query, name) || matchesQuery(query, detail));
+      this.showSymbols(query === "" ? matchingSymbols : matchingSymbols.map((symbol) => ({ ...symbol, depth: 0 })));
       return;
     }
     try {
       const symbols = (await this.client.request<object, WorkspaceSymbol[] | null>("workspace/symbol", { query })) ?? [];
-      if (number === this.number) this.show(symbols.map((symbol) => listSymbol(symbol)));
+      if (lastNumber === this.number) this.showSymbols(symbols.map((symbol) => toListedSymbol(symbol)));
     } catch (error) {
       this.status.textContent = messageOf(error);
     }
   }
 
-  private show(symbols: readonly ListedSymbol[]): void {
-    this.listedSymbols = symbols.slice(0, MAX_LISTED);
-    this.list.replaceChildren(...this.listedSymbols.map((symbol, index) => this.optionOf(symbol, index)));
+  private showSymbols(symbols: readonly ListedSymbol[]): void {
+    this.listedSymbols = symbols.slice(0, MAX_LISTED_SYMBOLS);
+    this.list.replaceChildren(...this.listedSymbols.map((symbol, index) => this.createOption(symbol, index)));
     this.status.textContent = strings.sourceEditor.symbolCount(symbols.length);
     this.dialog.isReady = symbols.length > 0;
-    this.choose(0);
+    this.selectOption(0);
   }
 
-  private optionOf({ name, detail, depth }: ListedSymbol, index: number): HTMLElement {
+  private createOption({ name, detail, depth }: ListedSymbol, index: number): HTMLElement {
     const option = h("div", { class: "symbol", role: "option" }, h("span", {}, name), h("small", {}, detail));
     option.id = `${this.id}-${String(index)}`;
     option.style.setProperty("--level", String(depth));
     return option;
   }
 
-  private choose(index: number): void {
+  private selectOption(index: number): void {
     this.chosenIndex = Math.max(0, Math.min(index, this.listedSymbols.length - 1));
     for (const [i, option] of [...this.list.children].entries()) option.setAttribute("aria-selected", String(i === this.chosenIndex));
     const option = this.list.children[this.chosenIndex];
@@ -146,23 +146,23 @@ export class SymbolSearch {
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    const next = { ArrowDown: this.chosenIndex + 1, ArrowUp: this.chosenIndex - 1, PageDown: this.chosenIndex + 10, PageUp: this.chosenIndex - 10 }[event.key];
-    if (event.target === this.field && next !== undefined) this.choose(next);
-    else if ((event.ctrlKey || event.metaKey) && event.shiftKey && event.key.toLowerCase() === "o") this.setWide(!this.isWide);
+    const nextIndex = { ArrowDown: this.chosenIndex + 1, ArrowUp: this.chosenIndex - 1, PageDown: this.chosenIndex + 10, PageUp: this.chosenIndex - 10 }[event.key];
+    if (event.target === this.field && nextIndex !== undefined) this.selectOption(nextIndex);
+    else if ((event.ctrlKey || event.metaKey) && event.shiftKey && event.key.toLowerCase() === "o") this.setWorkspaceWide(!this.isWorkspaceWide);
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
 }
 
-function flatten(symbols: readonly DocumentSymbol[], uri: string, depth: number): ListedSymbol[] {
+function flattenSymbols(symbols: readonly DocumentSymbol[], uri: string, depth: number): ListedSymbol[] {
   return symbols.flatMap(({ name, detail, selectionRange, children }) => [
     { name, detail: detail ?? "", depth, location: { uri, range: selectionRange } },
-    ...flatten(children ?? [], uri, depth + 1),
+    ...flattenSymbols(children ?? [], uri, depth + 1),
   ]);
 }
 
-function listSymbol({ name, location, containerName }: WorkspaceSymbol): ListedSymbol {
+function toListedSymbol({ name, location, containerName }: WorkspaceSymbol): ListedSymbol {
   const path = pathOf(location.uri);
   const file = path === null ? (containerName ?? "") : shortenPath(path);
   return { name, detail: `${file}:${location.range.start.line + 1}`, depth: 0, location };

@@ -26,7 +26,9 @@ export interface WorkspaceEdit {
   readonly documentChanges?: readonly (DocumentEdit | CreatedFile)[] | null;
 }
 
-/** The edits of each file by its URI, the files to create, and the versions of the edited texts that the edit states. */
+/**
+ * The edits of each file by its URI, the files to create, and the versions of the edited texts that the edit states.
+ */
 interface FileEdits {
   readonly edits: ReadonlyMap<string, readonly TextEdit[]>;
   readonly createdFiles: readonly string[];

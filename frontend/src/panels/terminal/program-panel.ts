@@ -1,4 +1,4 @@
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import type { ProgramPage } from "../../protocol";
 import { addSettings } from "../../requested-settings";
 import type { TerminalsState } from "../../state/terminals";
@@ -7,17 +7,17 @@ import { language, strings } from "../../strings";
 import type { Panel } from "../panel";
 
 /** The page of a program may download files and open tabs, but not replace this page. */
-const SANDBOX = "allow-scripts allow-same-origin allow-downloads allow-forms allow-modals allow-popups allow-popups-to-escape-sandbox allow-pointer-lock";
-const FEATURES = "fullscreen; microphone; gamepad; clipboard-read; clipboard-write";
+const SANDBOX_RULES = "allow-scripts allow-same-origin allow-downloads allow-forms allow-modals allow-popups allow-popups-to-escape-sandbox allow-pointer-lock";
+const ALLOWED_FEATURES = "fullscreen; microphone; gamepad; clipboard-read; clipboard-write";
 
 /** The pages of programs in the terminals, each in a frame; buttons choose one of several. */
 export class ProgramPanel implements Panel {
   readonly id = "program";
   readonly icon = "play";
   readonly element: HTMLElement;
-  private readonly empty = h("p", { class: "empty" }, strings.terminal.noProgram);
+  private readonly emptyNote = h("p", { class: "empty" }, strings.terminal.noProgram);
   private readonly tabs = h("div", { class: "segmented program-tabs", role: "group", aria: { label: strings.terminal.programs } });
-  private readonly bar: HTMLElement;
+  private readonly toolbar: HTMLElement;
   private readonly frameBox = h("div", { class: "program-place" });
   private readonly frames = new Map<number, HTMLIFrameElement>();
   private current: ProgramPage | undefined;
@@ -26,10 +26,10 @@ export class ProgramPanel implements Panel {
     private readonly state: TerminalsState,
     private readonly theme: ThemeState,
   ) {
-    this.bar = h("div", { class: "toolbar" }, this.tabs);
-    this.element = h("div", { class: "panel program-panel" }, this.empty, this.bar, this.frameBox);
+    this.toolbar = h("div", { class: "toolbar" }, this.tabs);
+    this.element = h("div", { class: "panel program-panel" }, this.emptyNote, this.toolbar, this.frameBox);
     state.programsChanged.on(() => this.update());
-    theme.changed.on(() => this.load());
+    theme.changed.on(() => this.loadFrames());
     this.update();
   }
 
@@ -49,15 +49,15 @@ export class ProgramPanel implements Panel {
       this.frames.set(program.id, frame);
       this.frameBox.append(frame);
     }
-    this.empty.hidden = programs.length > 0;
+    this.emptyNote.hidden = programs.length > 0;
     this.frameBox.hidden = programs.length === 0;
-    this.bar.hidden = programs.length < 2;
-    this.load();
+    this.toolbar.hidden = programs.length < 2;
+    this.loadFrames();
     this.show();
   }
 
   /** Loads the pages whose address has changed: it contains the theme. */
-  private load(): void {
+  private loadFrames(): void {
     for (const { id, url } of this.state.programs) {
       const frame = this.frames.get(id);
       const address = addSettings(url, { language, theme: this.theme.choice });
@@ -69,7 +69,7 @@ export class ProgramPanel implements Panel {
     for (const [id, frame] of this.frames) frame.hidden = id !== this.current?.id;
     const tabs = this.state.programs.map((program) => {
       const isCurrent = program.id === this.current?.id;
-      const tab = button(program.title, () => this.choose(program), isCurrent ? "on" : "", program.title || strings.panels.program);
+      const tab = createButton(program.title, () => this.choose(program), isCurrent ? "on" : "", program.title || strings.panels.program);
       tab.setAttribute("aria-pressed", String(isCurrent));
       return tab;
     });
@@ -84,7 +84,7 @@ export class ProgramPanel implements Panel {
 
 function createFrame(title: string): HTMLIFrameElement {
   const frame = h("iframe", { title: title || strings.panels.program });
-  frame.setAttribute("sandbox", SANDBOX);
-  frame.allow = FEATURES;
+  frame.setAttribute("sandbox", SANDBOX_RULES);
+  frame.allow = ALLOWED_FEATURES;
   return frame;
 }

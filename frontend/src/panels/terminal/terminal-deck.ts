@@ -1,7 +1,7 @@
 import "@xterm/xterm/css/xterm.css";
 import "../../styles/terminal.css";
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { TerminalItem } from "../../protocol";
 import type { TerminalSize, TerminalsState } from "../../state/terminals";
 import type { ThemeState } from "../../state/theme";
@@ -10,7 +10,7 @@ import { strings } from "../../strings";
 import { TerminalScreen } from "./terminal-screen";
 
 const READER_KEY = "linkwright.terminal-reader";
-const ON = "1";
+const ENABLED = "1";
 /** The size of a terminal until its place on the page is known. */
 const INITIAL_SIZE: TerminalSize = { columns: 80, rows: 24 };
 /** Browsers slow down hidden pages: after this time, the server no longer waits for the page to read the output. */
@@ -27,9 +27,9 @@ export class TerminalDeck {
   private readonly closeButton: HTMLButtonElement;
   private readonly readerButton: HTMLButtonElement;
   private readonly screens = new Map<number, TerminalScreen>();
-  private current: number | null = null;
+  private currentId: number | null = null;
   private isVisible = false;
-  private usesReader: boolean;
+  private usesScreenReader: boolean;
   /** The terminal that was requested, or 0 for a new one, until the server has answered. */
   private requestedId: number | null = null;
   private lostInputId: number | null = null;
@@ -41,31 +41,31 @@ export class TerminalDeck {
     private readonly storage: TextStorage,
   ) {
     const texts = strings.terminal;
-    this.usesReader = storage.getItem(READER_KEY) === ON;
-    this.noticeButton = button(texts.restart, () => this.runNotice(), "tool framed", texts.restart);
+    this.usesScreenReader = storage.getItem(READER_KEY) === ENABLED;
+    this.noticeButton = createButton(texts.restart, () => this.runNoticeAction(), "tool framed", texts.restart);
     this.notice.append(this.noticeText, this.noticeButton);
-    this.closeButton = button(texts.closeHint, () => this.close(), "tool", icon("close"), texts.close);
-    this.readerButton = button(texts.readerHint, () => this.toggleReader(), "tool", icon("speech"));
-    const copyButton = button(texts.copyHint, () => void this.screen?.copy(), "tool", icon("copy"));
-    const bar = h(
+    this.closeButton = createButton(texts.closeHint, () => this.close(), "tool", createIcon("close"), texts.close);
+    this.readerButton = createButton(texts.readerHint, () => this.toggleReader(), "tool", createIcon("speech"));
+    const copyButton = createButton(texts.copyHint, () => void this.screen?.copy(), "tool", createIcon("copy"));
+    const toolbar = h(
       "div",
       { class: "toolbar" },
       this.tabs,
-      button(texts.newHint, () => this.openNew(), "tool", icon("plus"), texts.new),
+      createButton(texts.newHint, () => this.openNew(), "tool", createIcon("plus"), texts.new),
       h("span", { class: "spacer" }),
       h("span", { class: "note terminal-keys" }, texts.keys),
       copyButton,
       this.readerButton,
       this.closeButton,
     );
-    this.element = h("div", { class: "terminal-deck" }, bar, this.screenBox, this.notice);
+    this.element = h("div", { class: "terminal-deck" }, toolbar, this.screenBox, this.notice);
     this.tabs.addEventListener("keydown", (event) => this.onTabKey(event));
     new ResizeObserver(() => this.screen?.fit()).observe(this.screenBox);
     state.changed.on(() => this.update());
     state.connectionChanged.on(() => this.showNotice());
     state.connected.on((isSameRun) => {
       this.requestedId = null;
-      if (!isSameRun) this.discard(() => true);
+      if (!isSameRun) this.disposeScreens(() => true);
     });
     state.output.on((output) => this.ensureScreen(output.terminal).receive(output));
     state.inputLost.on((id) => {
@@ -76,7 +76,7 @@ export class TerminalDeck {
       for (const screen of this.screens.values()) screen.setTheme(newTheme);
     });
     document.addEventListener("visibilitychange", () => this.followPage());
-    this.showReader();
+    this.updateReaderButton();
     this.update();
   }
 
@@ -88,7 +88,7 @@ export class TerminalDeck {
   inspect(): object {
     const { screen } = this;
     return {
-      current: this.current,
+      current: this.currentId,
       terminals: this.state.items.map((item) => ({ ...item })),
       text: screen?.readText() ?? "",
       size: screen?.size ?? null,
@@ -98,12 +98,12 @@ export class TerminalDeck {
     };
   }
 
-  private get item(): TerminalItem | undefined {
-    return this.current === null ? undefined : this.state.find(this.current);
+  private get currentItem(): TerminalItem | undefined {
+    return this.currentId === null ? undefined : this.state.find(this.currentId);
   }
 
   private get screen(): TerminalScreen | undefined {
-    return this.current === null ? undefined : this.screens.get(this.current);
+    return this.currentId === null ? undefined : this.screens.get(this.currentId);
   }
 
   private get size(): TerminalSize {
@@ -113,7 +113,7 @@ export class TerminalDeck {
   private ensureScreen(id: number): TerminalScreen {
     const existing = this.screens.get(id);
     if (existing) return existing;
-    const screen = new TerminalScreen(id, this.state, this.theme.theme, this.usesReader, () => this.tabOf(id)?.focus(), () => this.restartEnded());
+    const screen = new TerminalScreen(id, this.state, this.theme.theme, this.usesScreenReader, () => this.findTab(id)?.focus(), () => this.restartEnded());
     this.screens.set(id, screen);
     screen.element.hidden = true;
     this.screenBox.append(screen.element);
@@ -123,22 +123,22 @@ export class TerminalDeck {
   /** Adopts the server's list: removes closed terminals, chooses one, and requests it if no page shows it. */
   private update(): void {
     const { items } = this.state;
-    this.discard((id) => this.state.find(id) === undefined);
+    this.disposeScreens((id) => this.state.find(id) === undefined);
     if (this.requestedId !== null && this.state.unavailableReason !== "") this.requestedId = null;
     if (this.requestedId === 0) {
-      const openedItem = items.findLast(({ id, shown }) => shown === "here" && id !== this.current);
+      const openedItem = items.findLast(({ id, shown }) => shown === "here" && id !== this.currentId);
       if (openedItem) this.choose(openedItem.id);
     } else if (this.requestedId !== null && this.state.find(this.requestedId)?.shown === "here") this.requestedId = null;
-    if (this.item === undefined) this.current = (items.find(({ shown }) => shown !== "elsewhere") ?? items[0])?.id ?? null;
+    if (this.currentItem === undefined) this.currentId = (items.find(({ shown }) => shown !== "elsewhere") ?? items[0])?.id ?? null;
     this.showTabs();
     this.showNotice();
     if (!this.isVisible || document.hidden) return;
-    if (this.current === null && this.state.unavailableReason === "") this.openNew();
+    if (this.currentId === null && this.state.unavailableReason === "") this.openNew();
     this.showScreen();
-    if (this.item?.shown === "nowhere" && this.requestedId !== this.current) this.request();
+    if (this.currentItem?.shown === "nowhere" && this.requestedId !== this.currentId) this.request();
   }
 
-  private discard(isObsolete: (id: number) => boolean): void {
+  private disposeScreens(isObsolete: (id: number) => boolean): void {
     for (const [id, screen] of this.screens) {
       if (!isObsolete(id)) continue;
       screen.dispose();
@@ -148,23 +148,23 @@ export class TerminalDeck {
 
   private choose(id: number): void {
     this.requestedId = null;
-    this.current = id;
+    this.currentId = id;
     this.update();
     this.screen?.xterm.focus();
   }
 
   private showScreen(): void {
-    const { current } = this;
-    if (current === null) return;
-    this.ensureScreen(current);
-    for (const [id, screen] of this.screens) screen.element.hidden = id !== current || this.item?.shown === "elsewhere";
+    const { currentId } = this;
+    if (currentId === null) return;
+    this.ensureScreen(currentId);
+    for (const [id, screen] of this.screens) screen.element.hidden = id !== currentId || this.currentItem?.shown === "elsewhere";
     this.screen?.fit();
   }
 
   private request(): void {
-    if (this.current === null) return;
-    this.requestedId = this.current;
-    this.state.show(this.current, this.size);
+    if (this.currentId === null) return;
+    this.requestedId = this.currentId;
+    this.state.show(this.currentId, this.size);
   }
 
   private openNew(): void {
@@ -174,19 +174,19 @@ export class TerminalDeck {
   }
 
   private close(): void {
-    if (this.current === null) return;
+    if (this.currentId === null) return;
     const ids = this.state.items.map(({ id }) => id);
-    const index = ids.indexOf(this.current);
-    const closedId = this.current;
-    this.current = ids[index + 1] ?? ids[index - 1] ?? null;
+    const index = ids.indexOf(this.currentId);
+    const closedId = this.currentId;
+    this.currentId = ids[index + 1] ?? ids[index - 1] ?? null;
     this.state.close(closedId);
     this.update();
   }
 
   /** Restarts the shell if it has ended, and returns whether it had ended. */
   private restartEnded(): boolean {
-    if (this.current === null || (this.item?.status ?? null) === null) return false;
-    this.state.restart(this.current, this.size);
+    if (this.currentId === null || (this.currentItem?.status ?? null) === null) return false;
+    this.state.restart(this.currentId, this.size);
     this.screen?.xterm.focus();
     return true;
   }
@@ -194,9 +194,9 @@ export class TerminalDeck {
   private showTabs(): void {
     const hasFocus = this.tabs.contains(document.activeElement);
     const tabs = this.state.items.map(({ id, status }) => {
-      const isCurrent = id === this.current;
+      const isCurrent = id === this.currentId;
       const name = strings.terminal.name(id);
-      const tab = button(name, () => this.choose(id), isCurrent ? "on" : "", status === null ? name : strings.terminal.ended(name));
+      const tab = createButton(name, () => this.choose(id), isCurrent ? "on" : "", status === null ? name : strings.terminal.ended(name));
       tab.setAttribute("role", "tab");
       tab.setAttribute("aria-selected", String(isCurrent));
       tab.tabIndex = isCurrent ? 0 : -1;
@@ -205,33 +205,33 @@ export class TerminalDeck {
     });
     this.tabs.replaceChildren(...tabs);
     this.tabs.hidden = tabs.length === 0;
-    this.closeButton.disabled = this.current === null;
-    if (hasFocus && this.current !== null) this.tabOf(this.current)?.focus();
+    this.closeButton.disabled = this.currentId === null;
+    if (hasFocus && this.currentId !== null) this.findTab(this.currentId)?.focus();
   }
 
-  private tabOf(id: number): HTMLElement | null {
+  private findTab(id: number): HTMLElement | null {
     return this.tabs.querySelector(`[data-terminal="${id}"]`);
   }
 
   private onTabKey(event: KeyboardEvent): void {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     const ids = this.state.items.map(({ id }) => id);
-    const nextId = ids[(ids.indexOf(this.current ?? -1) + step + ids.length) % ids.length];
+    const nextId = ids[(ids.indexOf(this.currentId ?? -1) + step + ids.length) % ids.length];
     if (step === 0 || nextId === undefined) return;
     event.preventDefault();
-    this.current = nextId;
+    this.currentId = nextId;
     this.update();
-    this.tabOf(nextId)?.focus();
+    this.findTab(nextId)?.focus();
   }
 
   /** Shows why the terminal cannot be used now, and what the user can do. */
   private showNotice(): void {
     const texts = strings.terminal;
-    const { item } = this;
+    const { currentItem } = this;
     let [text, action] = [this.state.isConnected ? this.state.unavailableReason : texts.disconnected, ""];
-    if (text === "" && item?.shown === "elsewhere") [text, action] = [texts.elsewhere, texts.showHere];
-    else if (text === "" && item && item.status !== null) [text, action] = [texts.endedWith(item.status), texts.restart];
-    else if (text === "" && this.lostInputId === this.current && item) text = texts.inputLost;
+    if (text === "" && currentItem?.shown === "elsewhere") [text, action] = [texts.elsewhere, texts.showHere];
+    else if (text === "" && currentItem && currentItem.status !== null) [text, action] = [texts.endedWith(currentItem.status), texts.restart];
+    else if (text === "" && this.lostInputId === this.currentId && currentItem) text = texts.inputLost;
     this.noticeText.textContent = text;
     this.noticeButton.textContent = action;
     this.noticeButton.title = action;
@@ -239,25 +239,27 @@ export class TerminalDeck {
     this.notice.hidden = text === "";
   }
 
-  private runNotice(): void {
-    if (this.item?.shown === "elsewhere") this.request();
+  private runNoticeAction(): void {
+    if (this.currentItem?.shown === "elsewhere") this.request();
     else this.restartEnded();
     this.screen?.xterm.focus();
   }
 
   private toggleReader(): void {
-    this.usesReader = !this.usesReader;
-    this.storage.setItem(READER_KEY, this.usesReader ? ON : "");
-    for (const screen of this.screens.values()) screen.setScreenReader(this.usesReader);
-    this.showReader();
+    this.usesScreenReader = !this.usesScreenReader;
+    this.storage.setItem(READER_KEY, this.usesScreenReader ? ENABLED : "");
+    for (const screen of this.screens.values()) screen.setScreenReader(this.usesScreenReader);
+    this.updateReaderButton();
   }
 
-  private showReader(): void {
-    this.readerButton.classList.toggle("on", this.usesReader);
-    this.readerButton.setAttribute("aria-pressed", String(this.usesReader));
+  private updateReaderButton(): void {
+    this.readerButton.classList.toggle("on", this.usesScreenReader);
+    this.readerButton.setAttribute("aria-pressed", String(this.usesScreenReader));
   }
 
-  /** Leaves the terminals some time after the page was hidden, and shows the chosen one again when the page is shown. */
+  /**
+   * Leaves the terminals some time after the page was hidden, and shows the chosen one again when the page is shown.
+   */
   private followPage(): void {
     clearTimeout(this.hideTimer);
     if (!document.hidden) this.update();

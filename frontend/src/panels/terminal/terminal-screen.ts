@@ -36,7 +36,7 @@ export class TerminalScreen {
     private readonly id: number,
     private readonly state: TerminalsState,
     theme: Theme,
-    usesReader: boolean,
+    usesScreenReader: boolean,
     private readonly onLeave: () => void,
     private readonly onEnter: () => boolean,
   ) {
@@ -45,7 +45,7 @@ export class TerminalScreen {
       fontFamily: getComputedStyle(document.documentElement).getPropertyValue("--mono"),
       fontSize: 13,
       minimumContrastRatio: MIN_CONTRAST,
-      screenReaderMode: usesReader,
+      screenReaderMode: usesScreenReader,
       scrollback: SCROLLBACK_LINES,
       theme: readTerminalColors(theme),
     });

@@ -1,10 +1,10 @@
-import { button, h } from "../../dom";
+import { createButton, h } from "../../dom";
 import type { RecordedFile } from "../../protocol";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { Dialog, showNotice } from "../../widgets/dialog";
 import { openMenu, type MenuEntry } from "../../widgets/menu";
-import { saveFrom } from "../../widgets/save-file";
+import { saveFromUrl } from "../../widgets/save-file";
 import { chooseTopics } from "./record-dialog";
 import { formatAmount, formatLength, formatSeconds } from "./timeline-text";
 
@@ -19,7 +19,7 @@ export class RecordButton {
 
   constructor(private readonly session: Session) {
     const { recording } = session;
-    this.button = button(strings.recording.record, () => this.onClick(), "timeline-live timeline-record", "");
+    this.button = createButton(strings.recording.record, () => this.onClick(), "timeline-live timeline-record", "");
     this.element = h("span", { class: "timeline-recorder" }, this.problem, this.button);
     recording.changed.on(() => this.show());
     recording.finished.on((file) => this.showFile(file));
@@ -111,7 +111,7 @@ export class RecordButton {
         { label: strings.shell.ok },
         {
           label: texts.openHere,
-          isMain: true,
+          isPrimary: true,
           run: () => {
             this.session.recording.viewRequested.emit(file);
             return undefined;
@@ -123,5 +123,5 @@ export class RecordButton {
 }
 
 function downloadFile(file: RecordedFile): void {
-  saveFrom(`${file.name}.mcap`, new URL(file.url, document.baseURI).href);
+  saveFromUrl(`${file.name}.mcap`, new URL(file.url, document.baseURI).href);
 }

@@ -17,7 +17,7 @@ export function chooseTopics(session: Session): void {
       { label: strings.shell.cancel },
       {
         label: texts.begin,
-        isMain: true,
+        isPrimary: true,
         run: () => {
           session.recording.record([...chosenTopics]);
           return undefined;

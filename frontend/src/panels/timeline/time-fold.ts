@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { TimeControlState } from "../../state/time";
 import { strings } from "../../strings";
 import type { TimeStrip } from "../dock/time-strip";
@@ -10,7 +10,7 @@ export class TimeFold {
 
   constructor(time: TimeControlState, strip: TimeStrip) {
     const stateText = h("span", {});
-    this.element = button(strings.time.fold, () => strip.setUnfolded(!strip.isUnfolded), "tool bare time-fold", icon("clock"), stateText);
+    this.element = createButton(strings.time.fold, () => strip.setUnfolded(!strip.isUnfolded), "tool bare time-fold", createIcon("clock"), stateText);
     this.element.setAttribute("aria-label", strings.panels.time);
     const show = (): void => {
       this.element.hidden = !strip.exists;

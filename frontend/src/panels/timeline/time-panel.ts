@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { SyncMode, TimeControlState, Times } from "../../state/time";
 import { strings } from "../../strings";
 import { onVisibilityChange } from "../../widgets/visibility";
@@ -9,7 +9,7 @@ import type { Panel } from "../panel";
  * The interval at which the times are updated. Without a GPU, each change of text costs as much as half a frame of the
  * scene.
  */
-const REFRESH_MS = 1000;
+const REFRESH_INTERVAL_MS = 1000;
 const MODES: readonly SyncMode[] = ["Off", "Exact", "Approximate"];
 const TIME_FIELDS: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
 
@@ -21,7 +21,7 @@ export class TimePanel implements Panel {
   private readonly pauseButton: HTMLButtonElement;
   private readonly modeSelect = h("select", { class: "choice", title: strings.time.syncHint });
   private readonly sourceSelect = h("select", { class: "choice", title: strings.time.sourceHint });
-  private readonly figures = TIME_FIELDS.map((name) => ({ name, output: h("output", { class: "figure" }) }));
+  private readonly timeOutputs = TIME_FIELDS.map((name) => ({ name, output: h("output", { class: "figure" }) }));
 
   private timer = 0;
 
@@ -31,7 +31,7 @@ export class TimePanel implements Panel {
     close: () => void,
   ) {
     const texts = strings.time;
-    this.pauseButton = button(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", icon("pause"), texts.pause);
+    this.pauseButton = createButton(texts.pauseHint, () => time.set({ paused: !time.isPaused }), "tool", createIcon("pause"), texts.pause);
     this.modeSelect.append(...MODES.map((mode) => new Option(texts.modes[mode], mode)));
     this.modeSelect.setAttribute("aria-label", texts.sync);
     this.sourceSelect.setAttribute("aria-label", texts.source);
@@ -43,10 +43,10 @@ export class TimePanel implements Panel {
       this.pauseButton,
       createLabel(texts.sync, this.modeSelect),
       createLabel(texts.source, this.sourceSelect),
-      ...this.figures.map(({ name, output }) => createLabel(texts[name], output, name)),
+      ...this.timeOutputs.map(({ name, output }) => createLabel(texts[name], output, name)),
       h("span", { class: "spacer" }),
-      button(texts.resetHint, () => time.reset(), "tool", icon("reset"), texts.reset),
-      button(strings.close, close, "tool bare strip-close", icon("close")),
+      createButton(texts.resetHint, () => time.reset(), "tool", createIcon("reset"), texts.reset),
+      createButton(strings.close, close, "tool bare strip-close", createIcon("close")),
     );
     time.changed.on(() => this.update());
     this.update();
@@ -54,7 +54,7 @@ export class TimePanel implements Panel {
     onVisibilityChange(this.element, (isVisible) => {
       time.watch(isVisible);
       clearInterval(this.timer);
-      if (isVisible) this.timer = window.setInterval(() => this.updateTimes(), REFRESH_MS);
+      if (isVisible) this.timer = window.setInterval(() => this.updateTimes(), REFRESH_INTERVAL_MS);
       if (isVisible) this.updateTimes();
     });
   }
@@ -74,7 +74,7 @@ export class TimePanel implements Panel {
   private updateTimes(): void {
     const times = document.hidden ? null : this.time.computeTimes();
     if (!times) return;
-    for (const { name, output } of this.figures) {
+    for (const { name, output } of this.timeOutputs) {
       const text = times[name].toFixed(2);
       if (output.textContent !== text) output.textContent = text;
     }

@@ -1,7 +1,7 @@
-import { button, coalesce, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, coalesce, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { HistoryExtent } from "../../protocol";
-import { TAKES_LETTERS } from "../../scene/keyboard";
+import { LETTER_INPUT_SELECTOR } from "../../scene/keyboard";
 import type { RecordingControl } from "../../state/recording";
 import type { Session } from "../../state/session";
 import { SPEEDS, type TimelineState } from "../../state/timeline";
@@ -34,8 +34,8 @@ export class TimelineBar {
   /** Whether the focused element was focused with the pointer, not with Tab. */
   private isFocusedByPress = false;
   private readonly timeOutput = h("output", { class: "timeline-time" });
-  private readonly marks = h("canvas", { class: "timeline-marks" });
-  private readonly head = h("div", { class: "timeline-head" });
+  private readonly densityCanvas = h("canvas", { class: "timeline-marks" });
+  private readonly playhead = h("div", { class: "timeline-head" });
   private readonly markedPart = h("div", { class: "timeline-part" });
   /** The time at which the user started to mark a part, s since the epoch; null while no part is being marked. */
   private markStart: number | null = null;
@@ -53,20 +53,20 @@ export class TimelineBar {
     this.timeline = timeline;
     this.recording = session.recording;
     const texts = strings.timeline;
-    this.playButton = button(texts.play, () => timeline.play(!timeline.isPlaying), "tool bare", icon("play"));
-    this.loopButton = button(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", icon("loop"));
-    this.liveButton = button(texts.live, () => timeline.goLive(), "timeline-live");
+    this.playButton = createButton(texts.play, () => timeline.setPlaying(!timeline.isPlaying), "tool bare", createIcon("play"));
+    this.loopButton = createButton(texts.loop, () => timeline.setLoop(!timeline.isLooping), "tool bare", createIcon("loop"));
+    this.liveButton = createButton(texts.live, () => timeline.goLive(), "timeline-live");
     this.liveButton.textContent = texts.liveShort;
-    this.backButton = button(texts.back, () => timeline.step(false), "tool bare", icon("stepBack"));
-    this.forwardButton = button(texts.forward, () => timeline.step(true), "tool bare", icon("step"));
+    this.backButton = createButton(texts.back, () => timeline.step(false), "tool bare", createIcon("stepBack"));
+    this.forwardButton = createButton(texts.forward, () => timeline.step(true), "tool bare", createIcon("step"));
     this.speedSelect.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speedSelect.addEventListener("change", () => timeline.setSpeed(Number(this.speedSelect.value)));
     this.stepSelect.addEventListener("change", () => (timeline.stepTopic = this.stepSelect.value));
-    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: texts.position } }, this.marks, this.markedPart, this.head);
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: texts.position } }, this.densityCanvas, this.markedPart, this.playhead);
     this.track.addEventListener("pointerdown", (event) => this.onPointerDown(event));
     this.track.addEventListener("pointermove", (event) => {
       if (!this.track.hasPointerCapture(event.pointerId)) return;
-      if (this.markStart === null) this.goTo(event);
+      if (this.markStart === null) this.seekTo(event);
       else timeline.setMark({ start: this.markStart, end: this.timeAt(event) });
     });
     this.track.addEventListener("keydown", (event) => this.onKeyDown(event));
@@ -88,7 +88,7 @@ export class TimelineBar {
     timeline.changed.on(() => this.show());
     session.recording.changed.on(() => this.updateVisibility());
     timeline.moved.on(coalesce(() => this.showPosition()));
-    new ResizeObserver(() => this.drawMarks()).observe(this.track);
+    new ResizeObserver(() => this.drawDensities()).observe(this.track);
     this.bindKeys();
     this.bindSceneKeys();
     this.show();
@@ -105,24 +105,24 @@ export class TimelineBar {
     this.forwardButton.hidden = this.speedSelect.hidden = isLiveHistory && this.timeline.isLive;
     this.loopButton.hidden = isLiveHistory;
     this.track.setAttribute("aria-label", isLiveHistory ? texts.minutes : texts.position);
-    this.offerSteps();
+    this.updateStepSelect();
     const label = isPlaying ? texts.pause : texts.play;
     if (this.playButton.title !== label) {
       this.playButton.title = label;
       this.playButton.setAttribute("aria-label", label);
-      this.playButton.replaceChildren(icon(isPlaying ? "pause" : "play"));
+      this.playButton.replaceChildren(createIcon(isPlaying ? "pause" : "play"));
     }
     this.loopButton.setAttribute("aria-pressed", String(isLooping));
     this.loopButton.classList.toggle("on", isLooping);
     this.speedSelect.value = String(speed);
     this.problem.textContent = problem;
     this.problem.title = problem;
-    this.drawMarks();
+    this.drawDensities();
     this.showPosition();
   }
 
   /** Offers the topics to step by: those of the recording, or for live data those that are displayed. */
-  private offerSteps(): void {
+  private updateStepSelect(): void {
     const topics = (this.timeline.timeline?.topics ?? []).filter(({ count }) => count > 0).map(({ name }) => name);
     this.stepSelect.hidden = topics.length < 2;
     const options = [new Option(strings.timeline.allSteps, ""), ...topics.map((name) => new Option(name, name))];
@@ -141,7 +141,7 @@ export class TimelineBar {
     if (!timeline) return;
     const { start, end } = timeline;
     const fraction = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
-    this.head.style.left = `${(fraction * 100).toFixed(3)}%`;
+    this.playhead.style.left = `${(fraction * 100).toFixed(3)}%`;
     // The age cannot identify the displayed moment, because it keeps growing while time is paused.
     const timeText = extent ? (isLive ? formatExtent(extent) : formatMoment(position)) : formatElapsed(position - start, end - start);
     this.timeOutput.textContent = timeText;
@@ -157,19 +157,19 @@ export class TimelineBar {
     if (event.button !== 0) return;
     this.track.setPointerCapture(event.pointerId);
     this.markStart = event.shiftKey && this.timeline.timeline?.live === true ? this.timeAt(event) : null;
-    if (this.markStart === null) this.goTo(event);
+    if (this.markStart === null) this.seekTo(event);
     else this.timeline.setMark(null);
   }
 
-  private goTo(event: PointerEvent): void {
+  private seekTo(event: PointerEvent): void {
     this.timeline.seek(this.timeAt(event));
   }
 
   /** Returns the time at the pointer, s since the epoch. */
   private timeAt(event: PointerEvent): number {
     const { start, end } = this.timeline.timeline ?? { start: 0, end: 0 };
-    const box = this.track.getBoundingClientRect();
-    return Math.min(end, Math.max(start, start + ((event.clientX - box.left) / box.width) * (end - start)));
+    const trackRect = this.track.getBoundingClientRect();
+    return Math.min(end, Math.max(start, start + ((event.clientX - trackRect.left) / trackRect.width) * (end - start)));
   }
 
   private showMark(start: number, end: number): void {
@@ -183,12 +183,12 @@ export class TimelineBar {
   private onKeyDown(event: KeyboardEvent): void {
     const { timeline, position } = this.timeline;
     if (!timeline || event.ctrlKey || event.metaKey || event.altKey) return;
-    const page = PAGE_SHARE * (timeline.end - timeline.start);
+    const pageLength = PAGE_SHARE * (timeline.end - timeline.start);
     const targetTimes: Record<string, number> = {
       Home: timeline.start,
       End: timeline.end,
-      PageUp: position - page,
-      PageDown: position + page,
+      PageUp: position - pageLength,
+      PageDown: position + pageLength,
     };
     const targetTime = targetTimes[event.key];
     if (targetTime === undefined) return;
@@ -201,10 +201,10 @@ export class TimelineBar {
     document.addEventListener("keydown", (event) => {
       const { target } = event;
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
-      if (!(target instanceof Element) || target.closest(TAKES_LETTERS)) return;
-      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.isPlaying);
-      else if (event.key === "ArrowLeft" && this.isUnclaimed(target)) this.timeline.step(false);
-      else if (event.key === "ArrowRight" && this.isUnclaimed(target)) this.timeline.step(true);
+      if (!(target instanceof Element) || target.closest(LETTER_INPUT_SELECTOR)) return;
+      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.setPlaying(!this.timeline.isPlaying);
+      else if (event.key === "ArrowLeft" && this.canUseArrowKeys(target)) this.timeline.step(false);
+      else if (event.key === "ArrowRight" && this.canUseArrowKeys(target)) this.timeline.step(true);
       else if (event.key === "[" && this.timeline.timeline.live) this.timeline.markHere("start");
       else if (event.key === "]" && this.timeline.timeline.live) this.timeline.markHere("end");
       else return;
@@ -231,23 +231,23 @@ export class TimelineBar {
     );
   }
 
-  private isUnclaimed(target: Element): boolean {
+  private canUseArrowKeys(target: Element): boolean {
     return target === document.body || this.element.contains(target);
   }
 
   /** Draws the density of messages, in one row for each topic with messages; darker means more messages. */
-  private drawMarks(): void {
+  private drawDensities(): void {
     const rows = computeDensities(this.timeline.timeline?.topics ?? []);
     const { width, height } = this.track.getBoundingClientRect();
     const scale = window.devicePixelRatio;
-    this.marks.width = Math.max(1, Math.round(width * scale));
-    this.marks.height = Math.max(1, Math.round(height * scale));
-    const context = this.marks.getContext("2d");
+    this.densityCanvas.width = Math.max(1, Math.round(width * scale));
+    this.densityCanvas.height = Math.max(1, Math.round(height * scale));
+    const context = this.densityCanvas.getContext("2d");
     if (!context || rows.length === 0) return;
     context.fillStyle = getComputedStyle(this.track).getPropertyValue("--accent");
-    const rowHeight = this.marks.height / rows.length;
+    const rowHeight = this.densityCanvas.height / rows.length;
     rows.forEach((row, rowIndex) => {
-      const partWidth = this.marks.width / row.length;
+      const partWidth = this.densityCanvas.width / row.length;
       row.forEach((density, index) => {
         if (density === 0) return;
         context.globalAlpha = density;

@@ -1,11 +1,11 @@
 import type { HistoryExtent, TimelineTopic } from "../../protocol";
 
 /** The maximum number of topics with a row in the timeline. */
-const MAX_ROWS = 12;
+const MAX_TOPIC_ROWS = 12;
 const MIN_DENSITY = 0.12;
 
 /** Seconds since the epoch (1973); smaller times are those of a simulation. */
-const MIN_CALENDAR_TIME = 1e8;
+const MIN_CALENDAR_TIME_S = 1e8;
 
 /** Returns `0:07.250 / 1:30`: the elapsed time and the duration. */
 export function formatElapsed(elapsed: number, duration: number): string {
@@ -56,7 +56,7 @@ export function formatClock(seconds: number): string {
 
 /** Returns `14:03:07.250`, the local time of day, or `0:52.304` for simulated time, which starts at zero. */
 export function formatMoment(seconds: number): string {
-  if (seconds < MIN_CALENDAR_TIME) return formatMinutes(seconds, 3);
+  if (seconds < MIN_CALENDAR_TIME_S) return formatMinutes(seconds, 3);
   const date = new Date(Math.round(seconds * 1000));
   const parts = [date.getHours(), date.getMinutes(), date.getSeconds()];
   const clock = parts.map((part) => String(part).padStart(2, "0")).join(":");
@@ -69,7 +69,7 @@ export function formatMoment(seconds: number): string {
  */
 export function computeDensities(topics: readonly TimelineTopic[]): number[][] {
   const countedTopics = topics.filter(({ counts }) => counts.length > 0).sort((a, b) => b.count - a.count);
-  return countedTopics.slice(0, MAX_ROWS).map(({ counts }) => {
+  return countedTopics.slice(0, MAX_TOPIC_ROWS).map(({ counts }) => {
     const maxCount = Math.max(...counts);
     return counts.map((count) => (count === 0 ? 0 : MIN_DENSITY + (1 - MIN_DENSITY) * (count / maxCount)) * 0.6);
   });

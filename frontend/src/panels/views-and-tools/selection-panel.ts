@@ -9,7 +9,7 @@ import { onVisibilityChange } from "../../widgets/visibility";
 import type { Panel } from "../panel";
 
 /** The interval at which values of the selection are read while they change. */
-const REFRESH_MS = 250;
+const REFRESH_INTERVAL_MS = 250;
 
 /** RViz's Selection panel: the selection, and the properties that its display reports. */
 export class SelectionPanel implements Panel {
@@ -41,7 +41,7 @@ export class SelectionPanel implements Panel {
     this.timer = window.setTimeout(() => {
       this.timer = 0;
       this.tree.refresh();
-    }, REFRESH_MS);
+    }, REFRESH_INTERVAL_MS);
   }
 
   private createItems(): TreeItem[] {

@@ -2,7 +2,7 @@ import { h } from "../../dom";
 import { strings } from "../../strings";
 import type { Panel } from "../panel";
 
-const TF = "rviz_default_plugins/TF";
+const TF_CLASS = "rviz_default_plugins/TF";
 
 /** RViz's Transformation panel, whose only choice is TF. */
 export class TransformationPanel implements Panel {
@@ -19,7 +19,7 @@ export class TransformationPanel implements Panel {
       "div",
       { class: "panel transformation-panel" },
       h("p", { class: "hint" }, strings.transformation.hint),
-      h("label", { class: "labeled-row" }, radio, h("span", {}, strings.transformation.tf), h("span", { class: "row-badge" }, TF)),
+      h("label", { class: "labeled-row" }, radio, h("span", {}, strings.transformation.tf), h("span", { class: "row-badge" }, TF_CLASS)),
     );
   }
 }

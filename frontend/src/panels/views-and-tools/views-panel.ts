@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { Property, PropertyValue } from "../../protocol";
 import type { Session } from "../../state/session";
 import { FIXED_FRAME, type ViewState } from "../../state/view";
@@ -11,7 +11,7 @@ import type { TreeItem } from "../../tree/tree-item";
 import { TreeView } from "../../tree/tree-view";
 import type { Panel } from "../panel";
 
-const CURRENT = "current";
+const CURRENT_VIEW_KEY = "current";
 
 /** RViz's Views panel: the current view and the saved ones. */
 export class ViewsPanel implements Panel {
@@ -24,7 +24,7 @@ export class ViewsPanel implements Panel {
   private readonly removeButton: HTMLButtonElement;
   private readonly renameButton: HTMLButtonElement;
   /** The saved view whose row, or a row below it, is selected. */
-  private chosenId: string | null = null;
+  private selectedId: string | null = null;
 
   constructor({ view, frames }: Session) {
     this.view = view;
@@ -34,10 +34,10 @@ export class ViewsPanel implements Panel {
       () => this.createItems(),
       () => [FIXED_FRAME, ...frames.names],
     );
-    const zeroButton = button(texts.zeroHint, () => view.zero(), "tool", icon("zero"), h("span", { class: "tool-name" }, texts.zero));
+    const zeroButton = createButton(texts.zeroHint, () => view.zero(), "tool", createIcon("zero"), h("span", { class: "tool-name" }, texts.zero));
     zeroButton.setAttribute("aria-label", texts.zero);
-    this.removeButton = button(texts.removeHint, () => this.removeChosen(), "tool", texts.remove);
-    this.renameButton = button(texts.renameHint, () => this.startRename(), "tool", texts.rename);
+    this.removeButton = createButton(texts.removeHint, () => this.removeChosen(), "tool", texts.remove);
+    this.renameButton = createButton(texts.renameHint, () => this.startRename(), "tool", texts.rename);
     this.typeSelect.addEventListener("change", () => view.setClass(this.typeSelect.value));
     this.nameField.addEventListener("keydown", (event) => this.onNameKey(event));
     this.nameField.addEventListener("blur", () => {
@@ -52,13 +52,13 @@ export class ViewsPanel implements Panel {
         { class: "toolbar" },
         h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, texts.type), this.typeSelect),
         zeroButton,
-        button(texts.resetHint, () => view.reset(), "tool bare", icon("reset")),
+        createButton(texts.resetHint, () => view.reset(), "tool bare", createIcon("reset")),
       ),
       tree.element,
       h(
         "div",
         { class: "toolbar bottom" },
-        button(texts.saveHint, () => view.save(shortNameOf(view.current.cls)), "tool", texts.save),
+        createButton(texts.saveHint, () => view.save(shortNameOf(view.current.cls)), "tool", texts.save),
         this.removeButton,
         this.renameButton,
         this.nameField,
@@ -66,8 +66,8 @@ export class ViewsPanel implements Panel {
     );
     tree.element.addEventListener("keydown", (event) => this.onKeyDown(event), true);
     tree.itemSelected.on((item) => {
-      const [owner] = item.key.split("|");
-      this.chosenId = owner === CURRENT ? null : (owner ?? null);
+      const [viewKey] = item.key.split("|");
+      this.selectedId = viewKey === CURRENT_VIEW_KEY ? null : (viewKey ?? null);
       this.update();
     });
     view.changed.on(() => {
@@ -75,7 +75,7 @@ export class ViewsPanel implements Panel {
       tree.refresh();
     });
     view.listsChanged.on(() => {
-      if (!view.savedViews.some((savedView) => savedView.id === this.chosenId)) this.chosenId = null;
+      if (!view.savedViews.some((savedView) => savedView.id === this.selectedId)) this.selectedId = null;
       this.update();
       tree.refresh();
     });
@@ -88,23 +88,23 @@ export class ViewsPanel implements Panel {
       this.typeSelect.replaceChildren(...classes.map(({ cls }) => new Option(shortNameOf(cls), cls)));
     }
     this.typeSelect.value = current.cls;
-    this.removeButton.disabled = this.renameButton.disabled = this.chosenId === null;
+    this.removeButton.disabled = this.renameButton.disabled = this.selectedId === null;
   }
 
   private createItems(): TreeItem[] {
     const { view } = this;
     const { current } = view;
-    const set = (path: string, value: PropertyValue): void => view.set(path, value);
+    const set = (path: string, value: PropertyValue): void => view.setProperty(path, value);
     return [
       {
-        key: CURRENT,
+        key: CURRENT_VIEW_KEY,
         name: strings.views.current,
         kind: "group",
         value: shortNameOf(current.cls),
         description: "",
         isStrong: true,
         isExpanded: true,
-        children: () => createRows(CURRENT, view.properties, current.values, set),
+        children: () => createRows(CURRENT_VIEW_KEY, view.properties, current.values, set),
       },
       ...view.savedViews.map(({ id, view: savedView }): TreeItem => ({
         key: id,
@@ -112,28 +112,28 @@ export class ViewsPanel implements Panel {
         kind: "group",
         value: shortNameOf(savedView.cls),
         description: strings.views.useHint,
-        activate: () => view.use(id),
+        activate: () => view.applySaved(id),
         children: () =>
-          createRows(id, view.propertiesOf(savedView.cls), savedView.values, (path, value) => view.setSaved(id, path, value)),
+          createRows(id, view.propertiesOf(savedView.cls), savedView.values, (path, value) => view.setSavedValue(id, path, value)),
       })),
     ];
   }
 
   private onKeyDown(event: KeyboardEvent): void {
-    if (!(event.target as HTMLElement).matches("[role=treeitem]") || this.chosenId === null) return;
+    if (!(event.target as HTMLElement).matches("[role=treeitem]") || this.selectedId === null) return;
     if (event.key === "Delete") this.removeChosen();
-    else if (event.key === "F2" && (event.target as HTMLElement).dataset["key"] === this.chosenId) this.startRename();
+    else if (event.key === "F2" && (event.target as HTMLElement).dataset["key"] === this.selectedId) this.startRename();
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
 
   private removeChosen(): void {
-    if (this.chosenId !== null) this.view.remove(this.chosenId);
+    if (this.selectedId !== null) this.view.remove(this.selectedId);
   }
 
   private startRename(): void {
-    const chosenView = this.view.savedViews.find((savedView) => savedView.id === this.chosenId);
+    const chosenView = this.view.savedViews.find((savedView) => savedView.id === this.selectedId);
     if (!chosenView) return;
     this.nameField.hidden = false;
     this.nameField.value = chosenView.view.name;
@@ -142,7 +142,7 @@ export class ViewsPanel implements Panel {
   }
 
   private onNameKey(event: KeyboardEvent): void {
-    if (event.key === "Enter" && this.chosenId !== null) this.view.rename(this.chosenId, this.nameField.value);
+    if (event.key === "Enter" && this.selectedId !== null) this.view.rename(this.selectedId, this.nameField.value);
     if (event.key === "Enter" || event.key === "Escape") this.nameField.hidden = true;
     event.stopPropagation();
   }
@@ -150,7 +150,7 @@ export class ViewsPanel implements Panel {
 
 /** Returns the rows of a view; their keys begin with the key of the view. */
 function createRows(
-  owner: string,
+  viewKey: string,
   properties: readonly Property[],
   values: ViewValues,
   set: (path: string, value: PropertyValue) => void,
@@ -159,14 +159,14 @@ function createRows(
     const { id, name, kind, description, minimum, maximum, children } = property;
     const isGroup = kind === "group";
     return {
-      key: `${owner}|${id}`,
+      key: `${viewKey}|${id}`,
       name,
       kind,
       value: isGroup ? formatSummary(children, values) : (values[id] ?? property.value),
       description,
       minimum,
       maximum,
-      ...(children.length > 0 ? { children: () => createRows(owner, children, values, set) } : {}),
+      ...(children.length > 0 ? { children: () => createRows(viewKey, children, values, set) } : {}),
       ...(isGroup ? {} : { set: (value: PropertyValue) => set(id, value) }),
     };
   });

@@ -1,4 +1,4 @@
-import { button } from "../../dom";
+import { createButton } from "../../dom";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
@@ -11,5 +11,5 @@ export function proposesEnrolling(voice: VoiceState, words: WordsState): boolean
 /** Returns a button that starts enrollment at the user's location. */
 export function createEnrollHereButton(words: WordsState): HTMLButtonElement {
   const { enrollHere, enrollHereHint } = strings.voice.words;
-  return button(enrollHereHint, () => words.enrollRequested.emit(), "tool framed primary", enrollHere);
+  return createButton(enrollHereHint, () => words.enrollRequested.emit(), "tool framed primary", enrollHere);
 }

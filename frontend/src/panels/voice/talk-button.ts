@@ -1,5 +1,5 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { VoiceState } from "../../state/voice/voice";
 import { strings } from "../../strings";
 
@@ -10,7 +10,7 @@ export const TALK_KEY = "v";
 export function createTalkButton(voice: VoiceState, className: string, ...texts: readonly string[]): HTMLButtonElement {
   const { talk, talkHint } = strings.voice;
   const aria = texts.length > 0 ? {} : { label: talk };
-  const element = h("button", { class: className, title: talkHint, aria }, icon("microphone"), ...texts);
+  const element = h("button", { class: className, title: talkHint, aria }, createIcon("microphone"), ...texts);
   element.type = "button";
   element.setAttribute("aria-keyshortcuts", TALK_KEY);
   element.addEventListener("pointerdown", (event) => {
@@ -32,7 +32,7 @@ export function createTalkButton(voice: VoiceState, className: string, ...texts:
   // A long press must not open the context menu.
   element.addEventListener("contextmenu", (event) => event.preventDefault());
   const show = (): void => {
-    const isTalking = voice.isHeld || voice.isPanelOpen;
+    const isTalking = voice.isHeld || voice.isAlwaysListening;
     element.setAttribute("aria-pressed", String(isTalking));
     element.classList.toggle("talking", isTalking);
     element.classList.toggle("wrong", voice.microphone.problem !== null);

@@ -1,11 +1,11 @@
 import { h } from "../../dom";
-import { icon } from "../../icons";
+import { createIcon } from "../../icons";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { createEnrollHereButton, proposesEnrolling } from "./enroll-here";
 import { describeActivity, describeObstacle } from "./voice-words";
 
-const NOTICE_MS = 7000;
+const NOTICE_DURATION_MS = 7000;
 
 /**
  * The notice over the scene that shows whether the page listens, the words recognized so far, the result, or the
@@ -23,17 +23,17 @@ export class VoiceNotice {
     private readonly words: WordsState,
   ) {
     this.enrollButton = createEnrollHereButton(words);
-    this.element.append(icon("microphone"), this.text, this.enrollButton);
+    this.element.append(createIcon("microphone"), this.text, this.enrollButton);
     this.element.hidden = true;
     voice.changed.on(() => this.show());
-    voice.conversed.on(() => this.show());
+    voice.conversationChanged.on(() => this.show());
     words.changed.on(() => this.show());
   }
 
   private show(): void {
     const { voice } = this;
     const problem = describeObstacle(voice);
-    const isTalking = voice.isHeld || voice.isPanelOpen;
+    const isTalking = voice.isHeld || voice.isAlwaysListening;
     const lastText = voice.history.at(-1)?.text ?? "";
     const text = problem ?? (voice.partial || (isTalking ? describeActivity(voice) : lastText));
     const offersEnrolling = !isTalking && problem === null && proposesEnrolling(voice, this.words);
@@ -46,6 +46,6 @@ export class VoiceNotice {
     this.enrollButton.hidden = !offersEnrolling;
     this.element.hidden = text === "";
     clearTimeout(this.timer);
-    if (!isTalking && !offersEnrolling) this.timer = window.setTimeout(() => (this.element.hidden = true), NOTICE_MS);
+    if (!isTalking && !offersEnrolling) this.timer = window.setTimeout(() => (this.element.hidden = true), NOTICE_DURATION_MS);
   }
 }

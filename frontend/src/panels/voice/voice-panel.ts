@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { ConversationPart } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
@@ -13,7 +13,7 @@ import { createTalkButton } from "./talk-button";
 import { describeActivity, describeObstacle } from "./voice-words";
 import { WordsBox } from "./words-box";
 
-const ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<ConversationPart, string>;
+const PART_ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<ConversationPart, string>;
 
 /** The panel for talking to the robot, with the recognized texts, the commands and the responses. */
 export class VoicePanel implements Panel {
@@ -21,8 +21,8 @@ export class VoicePanel implements Panel {
   readonly icon = "microphone";
   readonly element: HTMLElement;
   private readonly meter = new LevelMeter(strings.voice.level);
-  private readonly state = h("div", { class: "voice-state", role: "status" });
-  private readonly history = h("div", { class: "voice-history", role: "log", tabIndex: 0, aria: { label: strings.voice.history } });
+  private readonly stateText = h("div", { class: "voice-state", role: "status" });
+  private readonly historyBox = h("div", { class: "voice-history", role: "log", tabIndex: 0, aria: { label: strings.voice.history } });
   private readonly openMicrophoneBox: ReturnType<typeof createTickBox>;
   private readonly enrollProposal: HTMLElement;
   private readonly wordsBox: WordsBox;
@@ -37,12 +37,12 @@ export class VoicePanel implements Panel {
   ) {
     const texts = strings.voice;
     const { speaker } = voice;
-    this.openMicrophoneBox = createTickBox(texts.open, texts.openHint, (isTicked) => voice.setOpen(isTicked));
+    this.openMicrophoneBox = createTickBox(texts.open, texts.openHint, (isTicked) => voice.setAlwaysListening(isTicked));
     this.speakBox = createTickBox(texts.speak, texts.speakHint, (isTicked) => speaker.configure({ on: isTicked }));
     this.voiceSelect = createSelect(texts.voice, [], (voiceUri) => speaker.configure({ voice: voiceUri }));
     const wordsBox = (this.wordsBox = new WordsBox(words, voice));
     this.enrollProposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, texts.words.proposal), createEnrollHereButton(words));
-    const clearButton = button(texts.clearHint, () => voice.clear(), "tool bare", icon("clear"));
+    const clearButton = createButton(texts.clearHint, () => voice.clear(), "tool bare", createIcon("clear"));
     this.element = h(
       "div",
       { class: "panel monitor" },
@@ -51,9 +51,9 @@ export class VoicePanel implements Panel {
         { class: "scroll voice" },
         h("div", { class: "voice-main" }, createTalkButton(voice, "tool framed voice-talk", texts.talkWithKey), this.meter.element),
         h("div", { class: "voice-row" }, this.openMicrophoneBox, h("span", { class: "spacer" }), clearButton),
-        this.state,
+        this.stateText,
         this.enrollProposal,
-        this.history,
+        this.historyBox,
         this.createCommandForm(),
         h("div", { class: "voice-row" }, this.speakBox, this.voiceSelect),
         this.noVoicesNote,
@@ -62,7 +62,7 @@ export class VoicePanel implements Panel {
     );
     voice.changed.on(() => this.show());
     words.changed.on(() => this.show());
-    voice.conversed.on(() => this.showHistory());
+    voice.conversationChanged.on(() => this.showHistory());
     onVisibilityChange(this.element, (isVisible) => {
       voice.watch(this, isVisible);
       wordsBox.watch(isVisible);
@@ -90,7 +90,7 @@ export class VoicePanel implements Panel {
     field.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && !event.isComposing) send();
     });
-    const sendButton = button(texts.sendHint, send, "tool framed", texts.send);
+    const sendButton = createButton(texts.sendHint, send, "tool framed", texts.send);
     return h("div", { class: "voice-command" }, h("div", { class: "voice-row" }, field, sendButton), this.textNote);
   }
 
@@ -99,10 +99,10 @@ export class VoicePanel implements Panel {
     const { speaker, serverState, microphone } = voice;
     const problem = describeObstacle(voice);
     const text = problem ?? describeActivity(voice);
-    if (this.state.textContent !== text) this.state.textContent = text;
-    this.state.classList.toggle("wrong", problem !== null);
+    if (this.stateText.textContent !== text) this.stateText.textContent = text;
+    this.stateText.classList.toggle("wrong", problem !== null);
     this.meter.show(microphone.isOpen ? microphone.peak : null);
-    this.openMicrophoneBox.box.checked = voice.isPanelOpen;
+    this.openMicrophoneBox.box.checked = voice.isAlwaysListening;
     this.enrollProposal.hidden = !proposesEnrolling(voice, this.words);
     this.textNote.hidden = serverState?.text_listeners !== 0;
     this.speakBox.box.checked = speaker.settings.on;
@@ -127,11 +127,17 @@ export class VoicePanel implements Panel {
     const { history, partial } = this.voice;
     const texts = strings.voice;
     const createRow = (part: ConversationPart, text: string): HTMLElement =>
-      h("div", { class: `voice-said ${part}` }, h("span", { title: texts.parts[part] }, icon(ICONS[part])), h("span", { class: "voice-part" }, texts.parts[part]), h("span", {}, text));
+      h(
+        "div",
+        { class: `voice-said ${part}` },
+        h("span", { title: texts.parts[part] }, createIcon(PART_ICONS[part])),
+        h("span", { class: "voice-part" }, texts.parts[part]),
+        h("span", {}, text),
+      );
     const rows = history.map(({ part, text }) => createRow(part, text));
     if (partial !== "") rows.push(createRow("partial", partial));
-    const isAtEnd = this.history.scrollTop + this.history.clientHeight >= this.history.scrollHeight - 4;
-    this.history.replaceChildren(...(rows.length > 0 ? rows : [h("p", { class: "note" }, texts.nothing)]));
-    if (isAtEnd) this.history.scrollTop = this.history.scrollHeight;
+    const isAtEnd = this.historyBox.scrollTop + this.historyBox.clientHeight >= this.historyBox.scrollHeight - 4;
+    this.historyBox.replaceChildren(...(rows.length > 0 ? rows : [h("p", { class: "note" }, texts.nothing)]));
+    if (isAtEnd) this.historyBox.scrollTop = this.historyBox.scrollHeight;
   }
 }

@@ -1,5 +1,5 @@
-import { button, h } from "../../dom";
-import { icon } from "../../icons";
+import { createButton, h } from "../../dom";
+import { createIcon } from "../../icons";
 import type { EnrolledWord, TakeJudged } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
@@ -16,9 +16,9 @@ const QUIET_PEAK = 0.06;
 export class WordsBox {
   readonly element: HTMLDetailsElement;
   private readonly list = h("div", { class: "word-list", role: "list" });
-  private readonly problem = h("p", { class: "note wrong", role: "status" });
+  private readonly problemNote = h("p", { class: "note wrong", role: "status" });
   private readonly file = h("p", { class: "note" });
-  private readonly field: HTMLInputElement;
+  private readonly wordField: HTMLInputElement;
   private readonly hereBox: HTMLElement;
   private readonly hereNote = h("span", { class: "note" });
   private readonly hereProgress = h("strong", { role: "status" });
@@ -31,28 +31,28 @@ export class WordsBox {
     private readonly voice: VoiceState,
   ) {
     const texts = strings.voice.words;
-    const add = (): void => {
-      words.addWord(field.value);
-      field.value = "";
+    const addWord = (): void => {
+      words.addWord(wordField.value);
+      wordField.value = "";
     };
-    const field = (this.field = createTextField(texts.choose, () => undefined));
-    field.maxLength = 100;
+    const wordField = (this.wordField = createTextField(texts.choose, () => undefined));
+    wordField.maxLength = 100;
     const suggestions = h("datalist", {}, ...texts.suggestions.map((suggestion) => new Option(suggestion)));
     suggestions.id = "voice-word-suggestions";
-    field.setAttribute("list", suggestions.id);
-    field.addEventListener("keydown", (event) => {
-      if (event.key === "Enter" && !event.isComposing) add();
+    wordField.setAttribute("list", suggestions.id);
+    wordField.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" && !event.isComposing) addWord();
     });
-    const picker = h("input", { aria: { label: texts.importFile } });
-    picker.type = "file";
-    picker.accept = ".json,application/json";
-    picker.hidden = true;
-    picker.addEventListener("change", () => {
-      const [file] = picker.files ?? [];
-      picker.value = "";
+    const fileInput = h("input", { aria: { label: texts.importFile } });
+    fileInput.type = "file";
+    fileInput.accept = ".json,application/json";
+    fileInput.hidden = true;
+    fileInput.addEventListener("change", () => {
+      const [file] = fileInput.files ?? [];
+      fileInput.value = "";
       void file?.text().then((text) => words.importFile(text));
     });
-    const endButton = button(texts.endHereHint, () => words.enrollHere(false), "tool framed", texts.endHere);
+    const endButton = createButton(texts.endHereHint, () => words.setEnrollingHere(false), "tool framed", texts.endHere);
     this.hereBox = h("div", { class: "word-here" }, this.hereProgress, this.hereNote, endButton);
     this.element = h(
       "details",
@@ -60,15 +60,15 @@ export class WordsBox {
       h("summary", {}, texts.title),
       this.hereBox,
       h("p", { class: "note" }, texts.hint),
-      h("div", { class: "voice-row" }, field, suggestions, button(texts.addHint, add, "tool framed", texts.add)),
+      h("div", { class: "voice-row" }, wordField, suggestions, createButton(texts.addHint, addWord, "tool framed", texts.add)),
       this.list,
-      this.problem,
+      this.problemNote,
       h(
         "div",
         { class: "voice-row" },
-        button(texts.importHint, () => picker.click(), "tool framed", icon("upload"), texts.importFile),
-        button(texts.exportHint, () => words.requestFile(), "tool framed", icon("download"), texts.exportFile),
-        picker,
+        createButton(texts.importHint, () => fileInput.click(), "tool framed", createIcon("upload"), texts.importFile),
+        createButton(texts.exportHint, () => words.requestFile(), "tool framed", createIcon("download"), texts.exportFile),
+        fileInput,
       ),
       this.file,
     );
@@ -88,20 +88,20 @@ export class WordsBox {
   enrollHere(): void {
     this.element.open = true;
     this.focusesNextWord = true;
-    this.words.enrollHere(true);
+    this.words.setEnrollingHere(true);
     this.hereBox.scrollIntoView({ block: "nearest" });
   }
 
   private show(): void {
     const { words } = this;
-    const enrolledWords = words.enrolledWords;
+    const enrolledWords = words.allWords;
     const key = JSON.stringify(enrolledWords.map(({ name }) => name));
     // Replace the rows only if words changed: a button that is held must stay in place.
     if (key !== this.shownNames) {
       this.shownNames = key;
       this.list.replaceChildren(...enrolledWords.map((word) => this.createRow(word)));
     }
-    enrolledWords.forEach((word, index) => this.update(this.list.children[index], word));
+    enrolledWords.forEach((word, index) => this.updateRow(this.list.children[index], word));
     this.showProblem();
     this.showHere();
     this.file.textContent = words.file === "" ? "" : strings.voice.words.keptIn(words.file);
@@ -109,12 +109,12 @@ export class WordsBox {
 
   private showProblem(): void {
     const problem = this.words.problem ?? (this.voice.microphone.problem === null ? null : describeObstacle(this.voice));
-    if (this.problem.textContent !== problem) this.problem.textContent = problem;
-    this.problem.hidden = problem === null;
+    if (this.problemNote.textContent !== problem) this.problemNote.textContent = problem;
+    this.problemNote.hidden = problem === null;
   }
 
   private showHere(): void {
-    const { enrolledWords: words, takesHere, missingHere, requiredTakes, file } = this.words;
+    const { allWords: words, takesHere, missingHere, requiredTakes, file } = this.words;
     const texts = strings.voice.words;
     this.hereBox.hidden = takesHere === null;
     if (takesHere === null) return;
@@ -126,15 +126,15 @@ export class WordsBox {
     if (!this.focusesNextWord || file === "") return;
     this.focusesNextWord = false;
     const row = nextWord && this.list.children[words.indexOf(nextWord)];
-    (row?.querySelector<HTMLElement>(".word-say") ?? this.field).focus();
+    (row?.querySelector<HTMLElement>(".word-say") ?? this.wordField).focus();
   }
 
   private createRow({ name }: EnrolledWord): HTMLElement {
     const texts = strings.voice.words;
     const { words } = this;
-    const sayButton = button(texts.say(name), () => undefined, "tool framed word-say", icon("microphone"));
+    const sayButton = createButton(texts.say(name), () => undefined, "tool framed word-say", createIcon("microphone"));
     const startTake = (): void => void words.startTake(name);
-    const end = (): void => {
+    const endTake = (): void => {
       if (words.recording === name) words.endTake();
     };
     sayButton.addEventListener("pointerdown", (event) => {
@@ -142,33 +142,33 @@ export class WordsBox {
       sayButton.setPointerCapture(event.pointerId);
       startTake();
     });
-    for (const eventType of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) sayButton.addEventListener(eventType, end);
+    for (const eventType of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) sayButton.addEventListener(eventType, endTake);
     sayButton.addEventListener("keydown", (event) => {
       if (event.key !== " " && event.key !== "Enter") return;
       event.preventDefault();
       if (!event.repeat) startTake();
     });
     sayButton.addEventListener("keyup", (event) => {
-      if (event.key === " " || event.key === "Enter") end();
+      if (event.key === " " || event.key === "Enter") endTake();
     });
-    const renameButton = button(texts.rename(name), () => askName(texts.renameTitle, texts.name, name, (newName) => words.rename(name, newName)), "tool bare", icon("rename"));
-    const removeButton = button(texts.remove(name), () => words.remove(name), "tool bare", icon("remove"));
+    const renameButton = createButton(texts.rename(name), () => askName(texts.renameTitle, texts.name, name, (newName) => words.rename(name, newName)), "tool bare", createIcon("rename"));
+    const removeButton = createButton(texts.remove(name), () => words.remove(name), "tool bare", createIcon("remove"));
     const head = h("div", { class: "word-head" }, sayButton, h("span", { class: "word-name" }, name), h("span", { class: "word-takes note" }), renameButton, removeButton);
     return h("div", { class: "word", role: "listitem" }, head, h("div", { class: "note word-judged", role: "status" }));
   }
 
-  private update(row: Element | undefined, { name, takes }: EnrolledWord): void {
-    const { recording, isHearing, requiredTakes, judgments, takesHere } = this.words;
+  private updateRow(row: Element | undefined, { name, takes }: EnrolledWord): void {
+    const { recording, isReadyForSpeech, requiredTakes, judgments, takesHere } = this.words;
     const texts = strings.voice.words;
-    const find = (part: string): Element | null => row?.querySelector(part) ?? null;
-    const countElement = find(".word-takes");
+    const findPart = (selector: string): Element | null => row?.querySelector(selector) ?? null;
+    const countElement = findPart(".word-takes");
     const takeCount = takesHere === null ? takes : Math.min(takesHere.get(name) ?? 0, requiredTakes);
     if (countElement) countElement.textContent = texts.takes(takeCount, requiredTakes);
     row?.classList.toggle("enough", takeCount >= requiredTakes);
-    find(".word-say")?.classList.toggle("talking", recording === name && isHearing);
+    findPart(".word-say")?.classList.toggle("talking", recording === name && isReadyForSpeech);
     const judgment = judgments.get(name);
-    const judgmentElement = find(".word-judged");
-    const recordingText = isHearing ? texts.saying : strings.voice.opening;
+    const judgmentElement = findPart(".word-judged");
+    const recordingText = isReadyForSpeech ? texts.saying : strings.voice.opening;
     const text = recording === name ? recordingText : judgment ? describeJudgment(judgment) : "";
     if (judgmentElement && judgmentElement.textContent !== text) judgmentElement.textContent = text;
     judgmentElement?.classList.toggle("wrong", recording !== name && judgment !== undefined && judgment.code !== null);

@@ -1,7 +1,7 @@
 import { Box3, Group, Mesh, MeshLambertMaterial } from "three";
 import { FIXED_FRAME } from "../../state/view";
 import { createAxes } from "../objects/geometries";
-import { framePose } from "../pose";
+import { readFramePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 const SEGMENT_COUNT = 24;
@@ -29,7 +29,7 @@ export class AxesDrawing implements Drawing {
     const { frames, displays } = this.context.session;
     const isInFixedFrame = this.frame === FIXED_FRAME || this.frame === displays.fixedFrame;
     if (isInFixedFrame) this.root.matrix.identity();
-    this.mesh.visible = isInFixedFrame || framePose(frames, frames.rowOf(this.frame), this.root.matrix);
+    this.mesh.visible = isInFixedFrame || readFramePose(frames, frames.rowOf(this.frame), this.root.matrix);
     this.root.matrixWorldNeedsUpdate = true;
   }
 

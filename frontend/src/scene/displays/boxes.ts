@@ -8,9 +8,9 @@ import type { DrawingContext } from "./drawing";
 import { colorOf, poseAt } from "./styles";
 
 /** The x y z of both ends of the twelve edges of a unit cube. */
-const EDGES = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position").array as Float32Array;
+const EDGE_ENDPOINTS = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position").array as Float32Array;
 /** The minimum and maximum height of a line of text, m; between them it is a third of the box. */
-const TEXT_HEIGHTS = [0.05, 0.5] as const;
+const TEXT_HEIGHT_RANGE_M = [0.05, 0.5] as const;
 
 /** The displays of vision_msgs_rviz_plugins: boxes or their edges only, in the colors of their classes. */
 export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
@@ -61,14 +61,14 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
       const color = displayColor ?? (r << 16) | (g << 8) | b;
       matrix.scale(size);
       if (hasEdgesOnly) {
-        for (let offset = 0; offset < EDGES.length; offset += 3) {
-          segments.push(...new Vector3().fromArray(EDGES, offset).applyMatrix4(matrix).toArray());
+        for (let offset = 0; offset < EDGE_ENDPOINTS.length; offset += 3) {
+          segments.push(...new Vector3().fromArray(EDGE_ENDPOINTS, offset).applyMatrix4(matrix).toArray());
           colors.push((color >> 16) / 255, ((color >> 8) & 255) / 255, (color & 255) / 255, 1);
         }
       } else this.boxes.add(matrix, 0, alpha, color);
       const score = content.scores[i] ?? -1;
       if (score < 0 || !rows.bool(false, "Show Score")) continue;
-      const height = Math.min(TEXT_HEIGHTS[1], Math.max(TEXT_HEIGHTS[0], size.z / 3));
+      const height = Math.min(TEXT_HEIGHT_RANGE_M[1], Math.max(TEXT_HEIGHT_RANGE_M[0], size.z / 3));
       this.texts.push(`${content.names[i] ?? ""} ${score.toFixed(2)}`.trim());
       anchors.push({ position: center.setZ(center.z + 0.6 * size.z + height), height });
     }

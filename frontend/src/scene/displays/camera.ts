@@ -63,7 +63,7 @@ export class CameraDrawing implements Drawing {
   afterFrame(scene: DrawnScene): void {
     const { data, model } = this;
     const { element } = this.panel;
-    if (!data || !model || !this.panel.isVisible || !this.isDue()) return;
+    if (!data || !model || !this.panel.isVisible || !this.canDrawNow()) return;
     const startMs = performance.now();
     if (!readDataPose(this.context.session.frames, data, this.camera.matrix)) return;
     const { rows } = this.context.display;
@@ -107,11 +107,11 @@ export class CameraDrawing implements Drawing {
    * Returns whether to draw now. Drawing the scene a second time may take at most half of the time; a skipped image is
    * drawn later.
    */
-  private isDue(): boolean {
-    const wait = this.nextDrawMs - performance.now();
-    if (wait <= 0) return true;
+  private canDrawNow(): boolean {
+    const waitMs = this.nextDrawMs - performance.now();
+    if (waitMs <= 0) return true;
     clearTimeout(this.retryTimer);
-    this.retryTimer = window.setTimeout(this.context.invalidate, wait);
+    this.retryTimer = window.setTimeout(this.context.invalidate, waitMs);
     return false;
   }
 
@@ -123,12 +123,12 @@ export class CameraDrawing implements Drawing {
     if (this.canvas.height !== height) this.canvas.height = height;
     const context = this.canvas.getContext("2d");
     if (!context) return;
-    const [w, h] = [width * zoom[0], height * zoom[1]];
+    const [imageWidth, imageHeight] = [width * zoom[0], height * zoom[1]];
     const drawImage = (alpha: number): void => {
       if (this.image.isEmpty) return;
       context.globalAlpha = alpha;
       context.imageSmoothingEnabled = false;
-      context.drawImage(this.image.canvas, (width - w) / 2, (height - h) / 2, w, h);
+      context.drawImage(this.image.canvas, (width - imageWidth) / 2, (height - imageHeight) / 2, imageWidth, imageHeight);
       context.globalAlpha = 1;
     };
     context.fillStyle = scene.background;

@@ -13,9 +13,9 @@ import { PointFieldStore } from "./point-fields";
 /** The radius around the pointer that picks points, as a share of half the scene's height: about 4 pixels. */
 const POINTER_RADIUS = 0.012;
 /** The maximum number of points that a rectangle selects. */
-const MAX_SELECTED = 1000;
+const MAX_SELECTED_POINTS = 1000;
 /** The side of the mark around a selected point of the style Points, m. */
-const POINT_MARK = 0.004;
+const POINT_MARK_SIZE_M = 0.004;
 
 /** The points of one message. */
 interface Cloud {
@@ -91,7 +91,7 @@ export class CloudDrawing implements Drawing {
     const inverse = new Matrix4();
     // Half the height of the visible area, m: at a distance of one meter, or at any distance for an orthographic
     // camera.
-    const { elements } = this.context.camera().projectionMatrix;
+    const { elements } = this.context.getCamera().projectionMatrix;
     const pointerRadius = POINTER_RADIUS / elements[5];
     const isOrthographic = elements[15] === 1;
     let nearestHit: Hit | null = null;
@@ -116,7 +116,7 @@ export class CloudDrawing implements Drawing {
     if (!this.context.display.rows.bool(true, "Selectable")) return keys;
     const position = new Vector3();
     for (const [key, { batch }] of this.clouds) {
-      for (let i = 0; i < batch.count && keys.length < MAX_SELECTED; i++) {
+      for (let i = 0; i < batch.count && keys.length < MAX_SELECTED_POINTS; i++) {
         position.fromArray(batch.positions, i * 3).applyMatrix4(batch.root.matrix);
         if (box.hasPoint(position.x, position.y, position.z)) keys.push(`${key}:${i}`);
       }
@@ -130,8 +130,8 @@ export class CloudDrawing implements Drawing {
     const { cloud, cloudKey, index } = item;
     const position = cloud.batch.positions.subarray(index * 3, index * 3 + 3);
     // The server numbers the points of the full cloud, also when the cloud is thinned for a slow connection.
-    const number = index * cloud.step;
-    return describePoint(number, cloudKey, position, this.fields.find(cloudKey, number));
+    const pointNumber = index * cloud.step;
+    return describePoint(pointNumber, cloudKey, position, this.fields.find(cloudKey, pointNumber));
   }
 
   positionOf(key: string): Vector3 | null {
@@ -149,12 +149,12 @@ export class CloudDrawing implements Drawing {
   inspect(): object {
     this.update();
     const clouds = [...this.clouds.values()];
-    const corners = computeBounds(clouds);
+    const bounds = computeBounds(clouds);
     const [first] = clouds;
     return {
       messages: clouds.length,
       points: clouds.reduce((sum, { batch }) => sum + batch.count, 0),
-      bounds: corners,
+      bounds,
       step: first?.step ?? 1,
       firstColor: first ? [...first.batch.colors.subarray(0, 4)] : [],
       style: this.readLook({ perDepth: 0 }).style,
@@ -191,7 +191,7 @@ export class CloudDrawing implements Drawing {
   private markSelection(): void {
     const centers = [...this.selectedKeys].flatMap((key) => this.positionOf(key)?.toArray() ?? []);
     const { style, size } = this.readLook({ perDepth: 0 });
-    this.marks.set(centers, style === "Points" ? POINT_MARK : size[0]);
+    this.marks.set(centers, style === "Points" ? POINT_MARK_SIZE_M : size[0]);
     this.context.invalidate();
   }
 }

@@ -4,9 +4,9 @@ import type { DrawingContext } from "./drawing";
 import { ImageDrawing } from "./image";
 
 /** CSS pixels: lines and texts have the same size whatever the size of the image and the panel. */
-const LINE_PX = 2;
-const TEXT_PX = 16;
-const MAX_PENDING = 10;
+const LINE_WIDTH_PX = 2;
+const TEXT_HEIGHT_PX = 16;
+const MAX_PENDING_BOXES = 10;
 
 /** linkwright/Detections: an image with boxes over it. */
 export class DetectionImageDrawing extends ImageDrawing {
@@ -34,7 +34,7 @@ export class DetectionImageDrawing extends ImageDrawing {
     if (content.kind === "image_boxes") {
       this.unmatchedBoxes = content.of_image ? null : content;
       if (content.of_image) this.boxesByStamp.set(stamp, content);
-      for (const stamp of [...this.boxesByStamp.keys()].slice(0, -MAX_PENDING)) this.boxesByStamp.delete(stamp);
+      for (const stamp of [...this.boxesByStamp.keys()].slice(0, -MAX_PENDING_BOXES)) this.boxesByStamp.delete(stamp);
       if (this.unmatchedBoxes) this.draw();
     } else super.onDataChanged(data);
   }
@@ -62,9 +62,9 @@ export class DetectionImageDrawing extends ImageDrawing {
     const context = overlay.getContext("2d");
     if (!context || width === 0) return;
     const { clientWidth, clientHeight } = this.panel.element;
-    const pointsPerPixel = Math.min(clientWidth / width, clientHeight / height);
-    if (pointsPerPixel === 0) return;
-    const scale = pointsPerPixel * window.devicePixelRatio;
+    const cssPixelsPerImagePixel = Math.min(clientWidth / width, clientHeight / height);
+    if (cssPixelsPerImagePixel === 0) return;
+    const scale = cssPixelsPerImagePixel * window.devicePixelRatio;
     overlay.width = Math.round(width * scale);
     overlay.height = Math.round(height * scale);
     this.drawnTexts = [];
@@ -79,13 +79,13 @@ export class DetectionImageDrawing extends ImageDrawing {
       const name = boxes.names[i] ?? "";
       const text = score < 0 ? name : `${name} ${score.toFixed(2)}`.trim();
       this.drawnTexts.push(text);
-      drawBox(context, boxes, i, pointsPerPixel, showsScore ? text : "");
+      drawBox(context, boxes, i, cssPixelsPerImagePixel, showsScore ? text : "");
     }
   }
 }
 
 /** Draws a box, with its text above the upper left corner, or inside the box if there is no room above. */
-function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxes, i: number, scale: number, text: string): void {
+function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxes, i: number, cssPixelsPerImagePixel: number, text: string): void {
   const [x = 0, y = 0, width = 0, height = 0, angle = 0] = boxes.subarray(5 * i, 5 * i + 5);
   const [red = 0, green = 0, blue = 0] = colors.subarray(3 * i, 3 * i + 3);
   const color = `rgb(${red} ${green} ${blue})`;
@@ -93,18 +93,18 @@ function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: ImageBoxe
   context.translate(x, y);
   context.rotate(angle);
   context.strokeStyle = color;
-  context.lineWidth = LINE_PX / scale;
+  context.lineWidth = LINE_WIDTH_PX / cssPixelsPerImagePixel;
   context.strokeRect(-width / 2, -height / 2, width, height);
   if (text !== "") {
-    const line = TEXT_PX / scale;
-    context.font = `${0.75 * line}px sans-serif`;
-    const top = y - height / 2 < line ? -height / 2 : -height / 2 - line;
+    const lineHeight = TEXT_HEIGHT_PX / cssPixelsPerImagePixel;
+    context.font = `${0.75 * lineHeight}px sans-serif`;
+    const top = y - height / 2 < lineHeight ? -height / 2 : -height / 2 - lineHeight;
     context.fillStyle = color;
-    context.fillRect(-width / 2, top, context.measureText(text).width + line / 2, line);
+    context.fillRect(-width / 2, top, context.measureText(text).width + lineHeight / 2, lineHeight);
     // Choose the text color for contrast: dark on light colors, light on dark ones.
     context.fillStyle = 0.3 * red + 0.59 * green + 0.11 * blue > 110 ? "#101010" : "#ffffff";
     context.textBaseline = "middle";
-    context.fillText(text, -width / 2 + line / 4, top + line / 2);
+    context.fillText(text, -width / 2 + lineHeight / 4, top + lineHeight / 2);
   }
   context.restore();
 }

@@ -19,9 +19,9 @@ export interface DrawingContext {
   /** Shows something outside the scene in step with the next frame, see `FrameLoop.schedule`. */
   readonly showWithFrame: (show: () => void) => void;
   /** Returns the current camera of the 3-D view. */
-  readonly camera: () => Camera;
+  readonly getCamera: () => Camera;
   /** Whether a light with shadows would not make the page slow. */
-  readonly affordsStudio: () => boolean;
+  readonly canAffordStudio: () => boolean;
 }
 
 /** The scene just drawn, for displays that draw it a second time. */

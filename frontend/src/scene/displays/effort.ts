@@ -6,10 +6,10 @@ import type { DrawingContext } from "./drawing";
 import { poseAt } from "./styles";
 
 /** The radius of a ring without effort, m, which is also added to the used share of the limit. */
-const MIN_RADIUS = 0.05;
+const MIN_RADIUS_M = 0.05;
 /** The points of a ring, which spans this many of 32 parts; the gap holds its arrow head. */
 const POINT_COUNT = 30;
-const PART_COUNT = 32;
+const RING_PART_COUNT = 32;
 
 /** rviz_default_plugins/Effort: rings around the joints, larger and redder the closer the effort is to its limit. */
 export class EffortDrawing extends ContentDrawing<"effort_rings"> {
@@ -48,8 +48,8 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
       content.joints.forEach((joint, i) => {
         if (!rows.bool(true, "Joints", joint)) return;
         const effort = content.efforts[i] ?? 0;
-        const share = computeUsedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS;
-        const radius = MIN_RADIUS + (share * scale) / 2;
+        const share = computeUsedShare(effort, content.limits[i] ?? 0) + MIN_RADIUS_M;
+        const radius = MIN_RADIUS_M + (share * scale) / 2;
         const [r, g, b] = rainbowColorOf(share);
         poseAt(content.poses, i, pose);
         strips.push(createRing(pose, radius, Math.sign(effort)));
@@ -74,7 +74,7 @@ function createRing(pose: Matrix4, radius: number, direction: number): Float32Ar
   const strip = new Float32Array(POINT_COUNT * 3);
   const point = new Vector3();
   for (let i = 0; i < POINT_COUNT; i++) {
-    const angle = (i * 2 * Math.PI) / PART_COUNT;
+    const angle = (i * 2 * Math.PI) / RING_PART_COUNT;
     const x = radius * Math.sin(angle);
     point.set(direction < 0 ? -x : x, radius * Math.cos(angle), 0).applyMatrix4(pose).toArray(strip, i * 3);
   }
@@ -86,10 +86,10 @@ export function rainbowColorOf(value: number): [number, number, number] {
   const hue = Math.min(1, Math.max(0, value)) * 5 + 1;
   const sector = Math.floor(hue);
   const fraction = hue - sector;
-  const n = sector % 2 === 0 ? fraction : 1 - fraction;
-  if (sector <= 1) return [n, 0, 1];
-  if (sector === 2) return [0, n, 1];
-  if (sector === 3) return [0, 1, n];
-  if (sector === 4) return [n, 1, 0];
-  return [1, n, 0];
+  const ramp = sector % 2 === 0 ? fraction : 1 - fraction;
+  if (sector <= 1) return [ramp, 0, 1];
+  if (sector === 2) return [0, ramp, 1];
+  if (sector === 3) return [0, 1, ramp];
+  if (sector === 4) return [ramp, 1, 0];
+  return [1, ramp, 0];
 }

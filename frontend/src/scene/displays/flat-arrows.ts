@@ -16,15 +16,15 @@ const FLAT_ARROW = [
  */
 export function createFlatArrows(poses: Float32Array, frame: Matrix4, lengthOf: (pose: number) => number): Float32Array {
   const count = poses.length / 7;
-  const result = new Float32Array(count * FLAT_ARROW.length * 3);
+  const segments = new Float32Array(count * FLAT_ARROW.length * 3);
   const [matrix, point] = [new Matrix4(), new Vector3()];
   for (let i = 0; i < count; i++) {
     poseAt(poses, i, matrix).premultiply(frame);
     const length = lengthOf(i);
-    FLAT_ARROW.forEach(([x, y], corner) => {
+    FLAT_ARROW.forEach(([x, y], pointIndex) => {
       point.set(x * length, y * length, 0).applyMatrix4(matrix);
-      point.toArray(result, (i * FLAT_ARROW.length + corner) * 3);
+      point.toArray(segments, (i * FLAT_ARROW.length + pointIndex) * 3);
     });
   }
-  return result;
+  return segments;
 }

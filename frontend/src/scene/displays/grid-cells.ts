@@ -56,8 +56,8 @@ export class GridCellsDrawing implements Drawing {
 
   inspect(): object {
     this.update();
-    const first = new Vector3().fromArray(this.batch.positions).applyMatrix4(this.root.matrix);
-    return { cells: this.batch.count, sides: [...this.sides], first: this.batch.count > 0 ? first.toArray() : null };
+    const firstCenter = new Vector3().fromArray(this.batch.positions).applyMatrix4(this.root.matrix);
+    return { cells: this.batch.count, sides: [...this.sides], first: this.batch.count > 0 ? firstCenter.toArray() : null };
   }
 
   dispose(): void {

@@ -15,7 +15,7 @@ export function createGridLines({ cells, normalCells, cellSize, plane }: GridSha
   const extent = (cells * cellSize) / 2;
   const top = (normalCells * cellSize) / 2;
   const addLine = (a: readonly number[], b: readonly number[]): void => {
-    points.push(...placeInPlane(a, plane), ...placeInPlane(b, plane));
+    points.push(...orientToPlane(a, plane), ...orientToPlane(b, plane));
   };
   for (let layer = 0; layer <= normalCells; layer++) {
     const z = top - layer * cellSize;
@@ -40,14 +40,14 @@ export function createGridLines({ cells, normalCells, cellSize, plane }: GridSha
  * Splits lines into a number of pieces each. Chromium's software renderer (SwiftShader) drops a line with an end behind
  * the camera, and with it the lines at the viewer's feet; of a split line it drops only the nearest piece.
  */
-export function splitLines(lines: Float32Array, pieces: number): Float32Array {
-  const result = new Float32Array(lines.length * pieces);
+export function splitLines(lines: Float32Array, pieceCount: number): Float32Array {
+  const result = new Float32Array(lines.length * pieceCount);
   let index = 0;
   for (let line = 0; line < lines.length; line += 6) {
     const [ax = 0, ay = 0, az = 0, bx = 0, by = 0, bz = 0] = lines.subarray(line, line + 6);
-    for (let end = 0; end < 2 * pieces; end++) {
-      const share = (end + 1) >> 1;
-      const ratio = share / pieces;
+    for (let end = 0; end < 2 * pieceCount; end++) {
+      const pieceIndex = (end + 1) >> 1;
+      const ratio = pieceIndex / pieceCount;
       result[index++] = ax + (bx - ax) * ratio;
       result[index++] = ay + (by - ay) * ratio;
       result[index++] = az + (bz - az) * ratio;
@@ -68,7 +68,7 @@ export function createFadedColors(ends: Float32Array): Float32Array {
   return colors;
 }
 
-function placeInPlane([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
+function orientToPlane([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
   if (plane === "XZ") return [a, normal, b];
   if (plane === "YZ") return [normal, a, b];
   return [a, b, normal];

@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, MeshLambertMaterial, Vector3, type Box3 } from "three";
 import type { GridSurface } from "../../protocol";
-import { OPAQUE_FROM } from "../materials";
+import { MIN_OPAQUE_ALPHA } from "../materials";
 import { concatenate, ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
@@ -42,10 +42,10 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
       pose.decompose(mesh.position, mesh.quaternion, new Vector3());
       mesh.visible = content.filled && alpha > 0;
       mesh.material.opacity = alpha;
-      mesh.material.transparent = alpha < OPAQUE_FROM;
-      mesh.material.depthWrite = alpha >= OPAQUE_FROM;
+      mesh.material.transparent = alpha < MIN_OPAQUE_ALPHA;
+      mesh.material.depthWrite = alpha >= MIN_OPAQUE_ALPHA;
     }
-    const segments = rows.bool(true, "Show Grid Lines") ? posedContents.map(({ content, pose }) => segmentsOf(content, pose)) : [];
+    const segments = rows.bool(true, "Show Grid Lines") ? posedContents.map(({ content, pose }) => createSegments(content, pose)) : [];
     this.lines.setSegments(concatenate(segments));
     this.lines.setStyle("#000000", alpha);
   }
@@ -53,8 +53,8 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   private createMesh(content: GridSurface): Mesh<BufferGeometry, MeshLambertMaterial> {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(content.points, 3));
-    geometry.setAttribute("color", new BufferAttribute(colorsOf(content), 3, true));
-    geometry.setIndex(trianglesOf(content));
+    geometry.setAttribute("color", new BufferAttribute(readRgb(content), 3, true));
+    geometry.setIndex(createTriangles(content));
     geometry.computeVertexNormals();
     const mesh = new Mesh(geometry, new MeshLambertMaterial({ side: DoubleSide, vertexColors: true }));
     this.surfaces.set(content, mesh);
@@ -71,40 +71,41 @@ export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
   }
 }
 
-function exists({ colors }: GridSurface, cell: number): boolean {
+function hasCell({ colors }: GridSurface, cell: number): boolean {
   return colors[cell * 4 + 3] !== 0;
 }
 
-function colorsOf({ colors }: GridSurface): Uint8Array {
-  const result = new Uint8Array((colors.length / 4) * 3);
-  for (let cell = 0; cell < colors.length / 4; cell++) result.set(colors.subarray(cell * 4, cell * 4 + 3), cell * 3);
-  return result;
+function readRgb({ colors }: GridSurface): Uint8Array {
+  const rgb = new Uint8Array((colors.length / 4) * 3);
+  for (let cell = 0; cell < colors.length / 4; cell++) rgb.set(colors.subarray(cell * 4, cell * 4 + 3), cell * 3);
+  return rgb;
 }
 
 /** Returns the triangles: two between four existing cells, one between three. */
-function trianglesOf(content: GridSurface): number[] {
+function createTriangles(content: GridSurface): number[] {
   const { rows, columns } = content;
-  const result: number[] = [];
+  const triangles: number[] = [];
   for (let row = 0; row + 1 < rows; row++) {
     for (let column = 0; column + 1 < columns; column++) {
-      const first = row * columns + column;
-      const corners = [first, first + columns, first + columns + 1, first + 1].filter((cell) => exists(content, cell));
+      const firstCell = row * columns + column;
+      const corners = [firstCell, firstCell + columns, firstCell + columns + 1, firstCell + 1].filter((cell) => hasCell(content, cell));
       const [a = 0, b = 0, c = 0, d = 0] = corners;
-      if (corners.length >= 3) result.push(a, b, c);
-      if (corners.length === 4) result.push(a, c, d);
+      if (corners.length >= 3) triangles.push(a, b, c);
+      if (corners.length === 4) triangles.push(a, c, d);
     }
   }
-  return result;
+  return triangles;
 }
 
-function segmentsOf(content: GridSurface, pose: Matrix4): Float32Array {
+function createSegments(content: GridSurface, pose: Matrix4): Float32Array {
   const { rows, columns, points } = content;
   const positions = new Float32Array(points.length);
   const position = new Vector3();
   for (let i = 0; i < points.length; i += 3) position.fromArray(points, i).applyMatrix4(pose).toArray(positions, i);
-  const result: number[] = [];
-  const connect = (first: number, second: number): void => {
-    if (exists(content, first) && exists(content, second)) result.push(...positions.subarray(first * 3, first * 3 + 3), ...positions.subarray(second * 3, second * 3 + 3));
+  const segments: number[] = [];
+  const connect = (firstCell: number, secondCell: number): void => {
+    if (!hasCell(content, firstCell) || !hasCell(content, secondCell)) return;
+    segments.push(...positions.subarray(firstCell * 3, firstCell * 3 + 3), ...positions.subarray(secondCell * 3, secondCell * 3 + 3));
   };
   for (let row = 0; row < rows; row++) {
     for (let column = 0; column < columns; column++) {
@@ -113,5 +114,5 @@ function segmentsOf(content: GridSurface, pose: Matrix4): Float32Array {
       if (column + 1 < columns) connect(cell, cell + 1);
     }
   }
-  return Float32Array.from(result);
+  return Float32Array.from(segments);
 }

@@ -1,12 +1,12 @@
 import { BufferGeometry, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments } from "three";
 import { FIXED_FRAME } from "../../state/view";
 import { WideLines } from "../objects/wide-lines";
-import { framePose } from "../pose";
+import { readFramePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { createGridLines, splitLines, createFadedColors } from "./grid-lines";
 
 /** The maximum number of pieces of a line; up to it, a line has one piece for each cell. */
-const MAX_PIECES = 20;
+const MAX_PIECES_PER_LINE = 20;
 
 /** rviz_default_plugins/Grid */
 export class GridDrawing implements Drawing {
@@ -40,7 +40,7 @@ export class GridDrawing implements Drawing {
     this.billboards.root.position.set(...offset);
     this.billboards.setSegments(hasBillboards ? segments : new Float32Array(0));
     this.billboards.setStyle(color, alpha, rows.number(0.03, "Line Style", "Line Width"));
-    const pieces = hasBillboards ? new Float32Array(0) : splitLines(segments, Math.max(1, Math.min(cells, MAX_PIECES)));
+    const pieces = hasBillboards ? new Float32Array(0) : splitLines(segments, Math.max(1, Math.min(cells, MAX_PIECES_PER_LINE)));
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(pieces, 3));
     this.isFading = this.context.session.displays.hasBackdrop;
@@ -66,7 +66,7 @@ export class GridDrawing implements Drawing {
       this.root.matrix.identity();
     } else {
       // Without a transform, RViz leaves the grid in place.
-      framePose(frames, frames.rowOf(this.frame), this.root.matrix);
+      readFramePose(frames, frames.rowOf(this.frame), this.root.matrix);
     }
     this.root.matrixWorldNeedsUpdate = true;
   }

@@ -99,7 +99,7 @@ export class ImageDrawing implements Drawing {
   /** Sends the panel's size to the server, which need not send more pixels than that. */
   private sendSize(): void {
     const { display, session } = this.context;
-    const toPixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);
+    const toPixels = (cssPixels: number): number => Math.ceil(cssPixels * window.devicePixelRatio);
     const { clientWidth, clientHeight } = this.panel.element;
     session.connection.send({
       type: "image_size",

@@ -11,7 +11,7 @@ import { setPoseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 /** The minimum interval between the poses that are sent while a marker is dragged, ms. */
-const FEEDBACK_MS = 33;
+const FEEDBACK_INTERVAL_MS = 33;
 
 /** rviz_default_plugins/InteractiveMarkers */
 export class InteractiveMarkersDrawing implements Drawing {
@@ -29,7 +29,7 @@ export class InteractiveMarkersDrawing implements Drawing {
   onDataChanged(data: DisplayData): void {
     const { content } = data;
     if (content.kind === "interactive_marker_moved") {
-      this.markers.get(content.name)?.move(data, content.pose);
+      this.markers.get(content.name)?.setServerPose(data, content.pose);
     } else if (content.kind === "interactive_marker") {
       this.remove(content.name);
       const marker = new MarkerHandle(content, data, this.context.meshes, this.context.invalidate);
@@ -40,15 +40,15 @@ export class InteractiveMarkersDrawing implements Drawing {
 
   onDataRemoved(key: string | null): void {
     if (key === null) for (const name of [...this.markers.keys()]) this.remove(name);
-    else if (key.startsWith(MARKER_KEY)) this.remove(key.slice(MARKER_KEY.length));
+    else if (key.startsWith(MARKER_KEY_PREFIX)) this.remove(key.slice(MARKER_KEY_PREFIX.length));
   }
 
   update(): void {
-    const { session, camera, display } = this.context;
+    const { session, getCamera, display } = this.context;
     const isAnyHeld = [...this.markers.values()].some((marker) => marker.isHeld);
     for (const marker of this.markers.values()) {
       const isHidden = isAnyHeld && this.interaction.hidesOthers && !marker.isHeld;
-      marker.update(session.frames, camera(), {
+      marker.update(session.frames, getCamera(), {
         showsDescriptions: display.rows.bool(true, "Show Descriptions"),
         showsAxes: display.rows.bool(false, "Show Axes"),
         showsAids: display.rows.bool(false, "Show Visual Aids"),
@@ -64,7 +64,7 @@ export class InteractiveMarkersDrawing implements Drawing {
   pick(ray: Raycaster): Hit | null {
     let nearestHit: Hit | null = null;
     for (const [name, marker] of this.markers) {
-      const hit = marker.root.visible ? marker.hit(ray) : null;
+      const hit = marker.root.visible ? marker.findNearestHit(ray) : null;
       if (hit && (nearestHit === null || hit.distance < nearestHit.distance)) {
         nearestHit = { key: `${hit.control}/${name}`, distance: hit.distance, point: hit.point };
       }
@@ -73,20 +73,20 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   describe(key: string): DescriptionRow | null {
-    const handles = this.find(key);
-    if (!handles) return null;
+    const picked = this.find(key);
+    if (!picked) return null;
     return {
-      name: `Interactive Marker ${handles.marker.shape.name}`,
+      name: `Interactive Marker ${picked.marker.shape.name}`,
       children: [
-        ...describePose(setPoseMatrix(handles.marker.values, new Matrix4())),
-        { name: "Control", value: handles.control.control.name },
+        ...describePose(setPoseMatrix(picked.marker.values, new Matrix4())),
+        { name: "Control", value: picked.control.control.name },
       ],
     };
   }
 
   objectsOf(key: string): readonly Object3D[] {
-    const handles = this.find(key);
-    return handles ? [handles.control.root] : [];
+    const picked = this.find(key);
+    return picked ? [picked.control.root] : [];
   }
 
   onInteractionChanged(interaction: Interaction): void {
@@ -95,22 +95,22 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 
   onPointer(event: ScenePointer): boolean {
-    const handles = event.hit && this.find(event.hit.key);
-    if (!event.hit || !handles) return false;
-    const { marker, control } = handles;
-    const { invalidate, camera } = this.context;
+    const picked = event.hit && this.find(event.hit.key);
+    if (!event.hit || !picked) return false;
+    const { marker, control } = picked;
+    const { invalidate, getCamera } = this.context;
     switch (event.type) {
       case "enter":
       case "leave":
         control.isHighlighted = event.type === "enter";
         event.setCursor(event.type === "enter" ? "grab" : "");
-        event.setHint(event.type === "enter" ? hintOf(control, marker.shape.menu.length > 0) : "");
+        event.setHint(event.type === "enter" ? composeHint(control, marker.shape.menu.length > 0) : "");
         invalidate();
         return true;
       case "down":
         return this.onPointerDown(event, event.hit, marker, control);
       case "move":
-        if (marker.follow(event, camera())) {
+        if (marker.followPointer(event, getCamera())) {
           this.sendPose(marker, control);
           invalidate();
         }
@@ -179,7 +179,7 @@ export class InteractiveMarkersDrawing implements Drawing {
 
   private sendPose(marker: MarkerHandle, control: ControlHandle): void {
     const now = performance.now();
-    if (now - this.lastFeedbackMs < FEEDBACK_MS) return;
+    if (now - this.lastFeedbackMs < FEEDBACK_INTERVAL_MS) return;
     this.lastFeedbackMs = now;
     this.send(marker, control, "pose_update");
   }
@@ -201,9 +201,9 @@ export class InteractiveMarkersDrawing implements Drawing {
   }
 }
 
-const MARKER_KEY = "marker ";
+const MARKER_KEY_PREFIX = "marker ";
 
-function hintOf(control: ControlHandle, hasMenu: boolean): string {
+function composeHint(control: ControlHandle, hasMenu: boolean): string {
   const texts = strings.interactive;
   const { mode, description } = control.control;
   const modeHint = mode === "none" ? "" : texts.modes[mode];

@@ -6,7 +6,7 @@ const UNKNOWN = [0x70, 0x89, 0x86, 255] as const;
  * Returns RViz's colors for the byte values of an occupancy grid: 256 times red, green, blue, alpha. `threshold` is
  * the smallest value that counts as occupied, or null for continuous shades.
  */
-export function mapPalette(scheme: MapScheme, threshold: number | null): Uint8Array {
+export function createMapPalette(scheme: MapScheme, threshold: number | null): Uint8Array {
   const palette = new Uint8Array(256 * 4);
   for (let value = 0; value < 256; value++) palette.set(colorOf(scheme, value, threshold), value * 4);
   return palette;

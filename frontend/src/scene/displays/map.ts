@@ -5,7 +5,7 @@ import { CellPlane } from "../objects/cell-plane";
 import type { Hit } from "../picking";
 import { readDataPose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
-import { mapPalette, type MapScheme } from "./map-palette";
+import { createMapPalette, type MapScheme } from "./map-palette";
 
 /** Maps are drawn before other transparent objects, and costmaps over maps. */
 const RENDER_ORDERS: Readonly<Record<MapScheme, number>> = { map: -3, raw: -2, costmap: -1 };
@@ -29,11 +29,11 @@ export class MapDrawing implements Drawing {
     const { rows } = this.context.display;
     const scheme = rows.text("map", "Color Scheme") as MapScheme;
     const isBinary = rows.bool(false, "Binary representation");
-    this.palette = mapPalette(scheme, isBinary ? rows.number(100, "Binary threshold") : null);
+    this.palette = createMapPalette(scheme, isBinary ? rows.number(100, "Binary threshold") : null);
     this.plane.setLook({
       palette: this.palette,
       alpha: rows.number(0.7, "Alpha"),
-      isSeeThrough: scheme !== "map",
+      isTranslucent: scheme !== "map",
       isBehind: rows.bool(false, "Draw Behind"),
       order: RENDER_ORDERS[scheme],
     });

@@ -2,10 +2,10 @@ import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "th
 import type { DisplayData } from "../../connection/data";
 import type { MarkerShape } from "../../protocol";
 import { describeNumbers, describePose } from "../described-pose";
-import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
-import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
+import { createMarkerObject, type MarkerObject } from "../markers/marker-object";
+import { isSolid, SolidMarkers, createMarkerSurfaces } from "../markers/solid-markers";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
-import { framePose, setPoseMatrix } from "../pose";
+import { readFramePose, setPoseMatrix } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 
 interface MarkerEntry {
@@ -111,7 +111,7 @@ export class MarkersDrawing implements Drawing {
     if (entry.object) return [entry.object.root];
     let outlines = this.outlines.get(key);
     if (!outlines) {
-      outlines = this.makeSurfaces(entry);
+      outlines = this.createSurfaces(entry);
       for (const object of outlines) {
         object.layers.disableAll();
         this.root.add(object);
@@ -143,13 +143,13 @@ export class MarkersDrawing implements Drawing {
   /** Returns the surfaces that a ray can hit. */
   private surfacesOf(entry: MarkerEntry): Object3D[] {
     if (entry.object) return [entry.object.root];
-    if (entry.marker.frame !== "") return this.makeSurfaces(entry); // it moves
-    return (entry.surfaces ??= this.makeSurfaces(entry));
+    if (entry.marker.frame !== "") return this.createSurfaces(entry); // it moves
+    return (entry.surfaces ??= this.createSurfaces(entry));
   }
 
-  private makeSurfaces({ marker, pose: localPose }: MarkerEntry): Object3D[] {
+  private createSurfaces({ marker, pose: localPose }: MarkerEntry): Object3D[] {
     const pose = new Matrix4();
-    return this.computePose(marker, localPose, pose) ? surfacesOf(marker, pose) : [];
+    return this.computePose(marker, localPose, pose) ? createMarkerSurfaces(marker, pose) : [];
   }
 
   private show(marker: MarkerShape): void {
@@ -160,13 +160,13 @@ export class MarkersDrawing implements Drawing {
       return;
     }
     this.remove(marker.id);
-    const object = isSolid(marker.shape) ? null : this.makeObject(marker);
+    const object = isSolid(marker.shape) ? null : this.createObject(marker);
     this.entries.set(marker.id, { marker, pose, object, surfaces: null });
   }
 
-  private makeObject(marker: MarkerShape): MarkerObject {
+  private createObject(marker: MarkerShape): MarkerObject {
     const { meshes, invalidate, session, display } = this.context;
-    const object = makeMarkerObject(marker, meshes, (problem) => {
+    const object = createMarkerObject(marker, meshes, (problem) => {
       const url = marker.mesh?.url ?? marker.texture ?? "";
       session.connection.send({ type: "mesh_status", display: display.id, link: marker.id, url, error: problem });
       invalidate();
@@ -190,7 +190,7 @@ export class MarkersDrawing implements Drawing {
     }
     const { frames, displays } = this.context.session;
     if (marker.frame === displays.fixedFrame) pose.identity();
-    else if (!framePose(frames, frames.rowOf(marker.frame), pose)) return false;
+    else if (!readFramePose(frames, frames.rowOf(marker.frame), pose)) return false;
     pose.multiply(localPose);
     return true;
   }

@@ -10,11 +10,11 @@ export class Pacing {
     return this.timer !== undefined;
   }
 
-  /** Returns whether to update in a frame at this time; `interval` in ms, 0 for every frame. */
-  isDue(now: number, interval: number): boolean {
-    const waitMs = this.lastUpdateMs + interval - now;
+  /** Returns whether to update in a frame at this time; `intervalMs`, 0 for every frame. */
+  shouldUpdate(nowMs: number, intervalMs: number): boolean {
+    const waitMs = this.lastUpdateMs + intervalMs - nowMs;
     if (waitMs <= 0) {
-      this.lastUpdateMs = now;
+      this.lastUpdateMs = nowMs;
       return true;
     }
     this.timer ??= setTimeout(() => {

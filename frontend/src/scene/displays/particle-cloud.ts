@@ -52,7 +52,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
     for (let i = 0; i < weights.length; i++) {
       poseAt(poses, i, matrix).premultiply(frame);
       const length = lengthOf(i);
-      if (shape === "Arrow (3D)") this.arrows.add(matrix, arrowOf(length), style);
+      if (shape === "Arrow (3D)") this.arrows.add(matrix, createArrowShape(length), style);
       else if (shape === "Axes") this.axes.add(matrix.multiply(new Matrix4().makeScale(length, length, length)));
     }
     this.arrows.end();
@@ -62,7 +62,7 @@ export class ParticleCloudDrawing extends ContentDrawing<"particle_marks"> {
   }
 }
 
-function arrowOf(length: number): { shaftLength: number; shaftDiameter: number; headLength: number; headDiameter: number } {
+function createArrowShape(length: number): { shaftLength: number; shaftDiameter: number; headLength: number; headDiameter: number } {
   return {
     shaftLength: length,
     shaftDiameter: length * SHAFT_DIAMETER,
@@ -75,7 +75,7 @@ function arrowOf(length: number): { shaftLength: number; shaftDiameter: number; 
  * Raises poses by their weights, as nav2 draws them. Their own height carries no information: they are on the ground.
  */
 function raiseByWeight(poses: Float32Array, weights: Float32Array, scale: number): Float32Array {
-  const result = poses.slice();
-  weights.forEach((weight, i) => (result[i * 7 + 2] = weight * scale));
-  return result;
+  const raisedPoses = poses.slice();
+  weights.forEach((weight, i) => (raisedPoses[i * 7 + 2] = weight * scale));
+  return raisedPoses;
 }

@@ -7,9 +7,9 @@ export class PointFieldStore {
   private readonly unsubscribe: () => void;
 
   constructor(private readonly context: DrawingContext) {
-    this.unsubscribe = context.session.connection.on("point_fields", (answer) => {
-      if (answer.display !== context.display.id) return;
-      this.fieldsByPoint.set(`${answer.key}:${answer.index}`, answer.fields);
+    this.unsubscribe = context.session.connection.on("point_fields", (message) => {
+      if (message.display !== context.display.id) return;
+      this.fieldsByPoint.set(`${message.key}:${message.index}`, message.fields);
       context.session.selection.changed.emit(context.session.selection.selectedLink);
     });
   }

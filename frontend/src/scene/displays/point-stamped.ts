@@ -9,22 +9,22 @@ const SEGMENT_COUNT = 16;
 
 /** rviz_default_plugins/PointStamped: spheres at the points; like RViz, this uses the property Radius as a diameter. */
 export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
-  private readonly balls = new CopyBatch(this.root, createSphere(SEGMENT_COUNT));
+  private readonly spheres = new CopyBatch(this.root, createSphere(SEGMENT_COUNT));
 
   constructor(context: DrawingContext) {
     super(context, "point_marks");
   }
 
   dispose(): void {
-    this.balls.dispose();
+    this.spheres.dispose();
   }
 
   protected override inspectContents(): object {
-    return { points: this.balls.size };
+    return { points: this.spheres.size };
   }
 
   protected expandBox(box: Box3): void {
-    this.balls.expandBox(box);
+    this.spheres.expandBox(box);
   }
 
   protected arrange(): void {
@@ -34,14 +34,14 @@ export class PointStampedDrawing extends ContentDrawing<"point_marks"> {
     const color = colorOf(rows, "#cc29cc", "Color");
     const contents = this.listPosedContents();
     const matrix = new Matrix4();
-    this.balls.begin(contents.reduce((sum, { content }) => sum + content.positions.length / 3, 0));
+    this.spheres.begin(contents.reduce((sum, { content }) => sum + content.positions.length / 3, 0));
     for (const { content, pose } of contents) {
       for (let i = 0; i < content.positions.length; i += 3) {
         const [x = 0, y = 0, z = 0] = content.positions.subarray(i, i + 3);
         matrix.makeScale(size, size, size).setPosition(x, y, z).premultiply(pose);
-        this.balls.add(matrix, 0, alpha, color);
+        this.spheres.add(matrix, 0, alpha, color);
       }
     }
-    this.balls.end();
+    this.spheres.end();
   }
 }

@@ -29,14 +29,14 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
 
   pickBox(box: SelectionBox): readonly string[] {
     return this.drawnContents.flatMap((drawnContent) => {
-      const position = placeOf(drawnContent);
+      const position = computePosition(drawnContent);
       return box.hasPoint(position.x, position.y, position.z) ? [drawnContent.key] : [];
     });
   }
 
   positionOf(key: string): Vector3 | null {
     const drawnContent = this.drawnContents.find((drawnContent) => drawnContent.key === key);
-    return drawnContent ? placeOf(drawnContent) : null;
+    return drawnContent ? computePosition(drawnContent) : null;
   }
 
   /** Returns a pose as in RViz's Selection panel: in the frame of its message. */
@@ -103,6 +103,6 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
 }
 
 /** Returns the position of the single pose of a content. */
-function placeOf({ content, pose }: PosedContent<PoseMarks>): Vector3 {
+function computePosition({ content, pose }: PosedContent<PoseMarks>): Vector3 {
   return new Vector3().setFromMatrixPosition(poseAt(content.poses, 0, new Matrix4()).premultiply(pose));
 }

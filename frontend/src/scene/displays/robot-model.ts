@@ -1,6 +1,6 @@
 import { Box3, Group, Matrix4, Vector3, type Mesh, type Object3D, type Raycaster } from "three";
 import type { LinkScene, RobotScene } from "../../protocol";
-import { framePose } from "../pose";
+import { readFramePose } from "../pose";
 import type { MovingView } from "../robot/moving-meshes";
 import type { Displacement } from "../robot/link-drawing";
 import { RobotDrawing } from "../robot/robot-drawing";
@@ -10,9 +10,9 @@ import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
 
 /** A new robot replaces the old one once its meshes are loaded, or after this time without them. */
-const SWAP_WITHIN_MS = 300;
+const MAX_SWAP_DELAY_MS = 300;
 /** Links closer than this count as coincident: m, and components of quaternions. */
-const COINCIDENCE = 1e-4;
+const COINCIDENCE_TOLERANCE = 1e-4;
 
 /** rviz_default_plugins/RobotModel */
 export class RobotModelDrawing implements Drawing {
@@ -33,7 +33,11 @@ export class RobotModelDrawing implements Drawing {
       if (robot?.display === display.id) this.setRobot(robot);
     };
     this.isContrastHigh = session.inspect.current.contrast;
-    this.unsubscribe = [session.robotChanged.on(setRobot), session.inspect.changed.on(() => this.onInspectChanged()), session.comparison.changed.on(() => this.recolor())];
+    this.unsubscribe = [
+      session.robotChanged.on(setRobot),
+      session.inspect.changed.on(() => this.onInspectChanged()),
+      session.comparison.changed.on(() => this.onComparisonChanged()),
+    ];
     setRobot(session.robots.get(display.id));
   }
 
@@ -89,7 +93,7 @@ export class RobotModelDrawing implements Drawing {
   /** Draws a part at another pose than that of the description; null restores it. */
   displace(displacement: Displacement | null): void {
     this.displacement = displacement;
-    this.drawing?.displaceShape(displacement?.shape ?? null);
+    this.drawing?.displaceShape(displacement?.movedShape ?? null);
     this.context.invalidate();
   }
 
@@ -106,12 +110,12 @@ export class RobotModelDrawing implements Drawing {
     this.isStyleStale = false;
     const { frames } = this.context.session;
     const computePose = (link: LinkScene, matrix: Matrix4): boolean => {
-      const hasPose = framePose(frames, frames.rowOf(link.frame), matrix);
-      if (hasPose) this.displacement?.link?.(link.name, matrix);
+      const hasPose = readFramePose(frames, frames.rowOf(link.frame), matrix);
+      if (hasPose) this.displacement?.moveLink?.(link.name, matrix);
       return hasPose;
     };
     this.drawing?.updatePoses(computePose, this.createDuplicateFilter());
-    this.drawing?.chooseDetail(this.context.camera());
+    this.drawing?.chooseDetail(this.context.getCamera());
   }
 
   simplify(view: MovingView | null): void {
@@ -143,7 +147,7 @@ export class RobotModelDrawing implements Drawing {
     const { session, display } = this.context;
     const link = session.robots.get(display.id)?.links.find((scene) => scene.name === name);
     const pose = new Matrix4();
-    if (!link || !framePose(session.frames, session.frames.rowOf(link.frame), pose)) return null;
+    if (!link || !readFramePose(session.frames, session.frames.rowOf(link.frame), pose)) return null;
     return new Vector3().setFromMatrixPosition(pose);
   }
 
@@ -166,14 +170,14 @@ export class RobotModelDrawing implements Drawing {
     const { comparison, displays, frames, robots } = session;
     const newDisplay = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
     if (displays.find(newDisplay)?.isEnabled !== true) return undefined;
-    const frameOf = new Map(robots.get(newDisplay)?.links.map(({ name, frame }) => [name, frame]));
+    const frameByLink = new Map(robots.get(newDisplay)?.links.map(({ name, frame }) => [name, frame]));
     return ({ name, frame }) => {
       const twin = comparison.twinOf(display.id, name);
-      return twin !== undefined && frames.computeDifference(frame, frameOf.get(twin) ?? "") < COINCIDENCE;
+      return twin !== undefined && frames.computeDifference(frame, frameByLink.get(twin) ?? "") < COINCIDENCE_TOLERANCE;
     };
   }
 
-  private recolor(): void {
+  private onComparisonChanged(): void {
     this.isStyleStale = true;
     this.context.invalidate();
   }
@@ -202,16 +206,16 @@ export class RobotModelDrawing implements Drawing {
     );
     this.nextDrawing = robot;
     if (robot.isSettled || this.drawing === null) {
-      this.show(robot);
+      this.swapIn(robot);
       return;
     }
-    const timeout = new Promise((resolve) => setTimeout(resolve, SWAP_WITHIN_MS));
+    const timeout = new Promise((resolve) => setTimeout(resolve, MAX_SWAP_DELAY_MS));
     void Promise.race([robot.settling, timeout]).then(() => {
-      if (this.nextDrawing === robot) this.show(robot);
+      if (this.nextDrawing === robot) this.swapIn(robot);
     });
   }
 
-  private show(robot: RobotDrawing): void {
+  private swapIn(robot: RobotDrawing): void {
     this.drawing?.dispose();
     this.drawing = robot;
     this.drawingCount += 1;

@@ -6,11 +6,11 @@ import type { DrawingContext } from "./drawing";
 import { colorOf } from "./styles";
 
 /** RViz's arrow of unit length and width, which is scaled to draw vectors. */
-const ARROW = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
+const UNIT_ARROW = { shaftLength: 1, shaftDiameter: 0.1, headLength: 0.3, headDiameter: 0.2 };
 /** The circle around an angular vector, in parts of 32; the gap holds its arrow head. */
 const CIRCLE = { from: 4, to: 32, parts: 32 };
-const CIRCLE_WIDTH = 0.05;
-const CIRCLE_HEAD = 0.1;
+const CIRCLE_LINE_WIDTH = 0.05;
+const CIRCLE_HEAD_SIZE = 0.1;
 
 /**
  * rviz_default_plugins/TwistStamped, AccelStamped and Wrench: an arrow for each vector, and a circle around the angular
@@ -62,16 +62,16 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
     }
     this.arrows.end();
     this.circles.setStrips(circles);
-    this.circles.setStyle(angularColor, alpha, width * CIRCLE_WIDTH);
+    this.circles.setStyle(angularColor, alpha, width * CIRCLE_LINE_WIDTH);
   }
 
-  private addVector(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): void {
+  private addVector(pose: Matrix4, direction: Vector3, length: number, width: number, look: ArrowLook): void {
     const matrix = poseAlongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
-    this.arrows.add(matrix.multiply(new Matrix4().makeScale(length, width, width)), ARROW, look);
+    this.arrows.add(matrix.multiply(new Matrix4().makeScale(length, width, width)), UNIT_ARROW, look);
   }
 
   /** Returns the points of a circle around the middle of the vector, and adds its arrow head to the arrows. */
-  private addCircle(pose: Matrix4, direction: Vector3, length: number, width: number, look: Look): Float32Array {
+  private addCircle(pose: Matrix4, direction: Vector3, length: number, width: number, look: ArrowLook): Float32Array {
     // The vector is along x here, so that the circle turns from y to z.
     const matrix = poseAlongX(new Vector3(), direction, new Matrix4()).premultiply(pose);
     const radius = length / 4;
@@ -83,7 +83,7 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
       point.applyMatrix4(matrix).toArray(strip, (i - CIRCLE.from) * 3);
     }
     const head = new Matrix4().makeBasis(new Vector3(0, 0, 1), new Vector3(1, 0, 0), new Vector3(0, 1, 0));
-    const size = width * CIRCLE_HEAD;
+    const size = width * CIRCLE_HEAD_SIZE;
     this.arrows.add(
       head.setPosition(length / 2, radius, 0).premultiply(matrix),
       { shaftLength: 0, shaftDiameter: size, headLength: size, headDiameter: 2 * size },
@@ -93,7 +93,7 @@ export class ScrewDrawing extends ContentDrawing<"screw"> {
   }
 }
 
-interface Look {
+interface ArrowLook {
   color: number;
   alpha: number;
 }

@@ -3,19 +3,19 @@ import { describePose } from "../described-pose";
 import { poseAlongX } from "../objects/arrow-batch";
 import { LabelBatch } from "../objects/label-batch";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
-import { framePose } from "../pose";
+import { readFramePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
 import { fadeForAge, type Fade } from "./fade";
 import { FrameMarkers } from "./frame-markers";
 
-const SHAFT_DIAMETER = 0.01;
-const HEAD_DIAMETER = 0.04;
+const SHAFT_DIAMETER_M = 0.01;
+const HEAD_DIAMETER_M = 0.04;
 const SHAFT_COLOR = 0xcccc4d;
 const HEAD_COLOR = 0xff1a99;
-const HEAD_LENGTH = 0.1;
-const NAME_HEIGHT = 0.1;
+const HEAD_LENGTH_M = 0.1;
+const NAME_HEIGHT_M = 0.1;
 /** A frame closer to its parent than this gets no arrow, m. */
-const MIN_ARROW = 0.001;
+const MIN_ARROW_LENGTH_M = 0.001;
 /** The number of steps in which fading is drawn, so that frames are requested only at steps. */
 const FADE_STEP_COUNT = 32;
 
@@ -59,14 +59,14 @@ export class TfDrawing implements Drawing {
     const { frames } = this.context.session;
     const showsAxes = rows.bool(true, "Show Axes");
     const showsNames = rows.bool(false, "Show Names");
-    this.markers.refine(fades.length > MAX_FINE_FRAMES ? COARSE_SEGMENT_COUNT : FINE_SEGMENT_COUNT);
+    this.markers.setSegmentCount(fades.length > MAX_FINE_FRAMES ? COARSE_SEGMENT_COUNT : FINE_SEGMENT_COUNT);
     const { axes } = this.markers;
     axes.begin(fades.length);
     this.nameCount = 0;
     this.axesNames = [];
     this.names.begin(showsNames ? fades.reduce((sum, [row]) => sum + (frames.names[row]?.length ?? 0), 0) : 0);
     for (const [row, fade] of fades) {
-      if (!framePose(frames, row, pose)) continue;
+      if (!readFramePose(frames, row, pose)) continue;
       if (showsAxes) {
         axes.add(pose.clone().multiply(size), fade.gray, fade.alpha);
         this.axesNames.push(frames.names[row] ?? "");
@@ -76,7 +76,7 @@ export class TfDrawing implements Drawing {
       this.names.add(
         frames.names[row] ?? "",
         position.setFromMatrixPosition(pose),
-        NAME_HEIGHT * scale,
+        NAME_HEIGHT_M * scale,
         fade.gray,
         fade.alpha,
       );
@@ -104,7 +104,7 @@ export class TfDrawing implements Drawing {
   positionOf(name: string): Vector3 | null {
     const pose = new Matrix4();
     const { frames } = this.context.session;
-    return framePose(frames, frames.rowOf(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
+    return readFramePose(frames, frames.rowOf(name), pose) ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
   /** Returns a frame as RViz's Selection panel shows it. */
@@ -112,7 +112,7 @@ export class TfDrawing implements Drawing {
     const { frames } = this.context.session;
     const row = frames.rowOf(name);
     const pose = new Matrix4();
-    if (!framePose(frames, row, pose)) return null;
+    if (!readFramePose(frames, row, pose)) return null;
     const parent = frames.names[frames.parents[row] ?? -1] ?? "";
     return { name: `Frame ${name}`, children: [{ name: "Parent", value: parent }, ...describePose(pose)] };
   }
@@ -141,17 +141,17 @@ export class TfDrawing implements Drawing {
     arrows.begin(fades.length);
     for (const [row, { gray, alpha }] of fades) {
       const parent = frames.parents[row] ?? -1;
-      if (!frames.has(parent)) continue;
+      if (!frames.hasPose(parent)) continue;
       start.fromArray(frames.poses, row * 7);
       direction.fromArray(frames.poses, parent * 7).sub(start);
       const distance = direction.length();
-      if (distance < MIN_ARROW) continue;
-      const headLength = distance < HEAD_LENGTH * scale ? HEAD_LENGTH * scale * distance : HEAD_LENGTH * scale;
+      if (distance < MIN_ARROW_LENGTH_M) continue;
+      const headLength = distance < HEAD_LENGTH_M * scale ? HEAD_LENGTH_M * scale * distance : HEAD_LENGTH_M * scale;
       const shape = {
         shaftLength: distance - headLength,
-        shaftDiameter: SHAFT_DIAMETER * scale,
+        shaftDiameter: SHAFT_DIAMETER_M * scale,
         headLength,
-        headDiameter: HEAD_DIAMETER * scale,
+        headDiameter: HEAD_DIAMETER_M * scale,
       };
       arrows.add(poseAlongX(start, direction, pose), shape, { color: SHAFT_COLOR, headColor: HEAD_COLOR, alpha, gray });
     }
@@ -161,13 +161,13 @@ export class TfDrawing implements Drawing {
   private listVisibleFrames(): (readonly [number, Fade])[] {
     const { frames } = this.context.session;
     const timeout = this.context.display.rows.number(15, "Frame Timeout");
-    const result: (readonly [number, Fade])[] = [];
+    const visibleFrames: (readonly [number, Fade])[] = [];
     frames.names.forEach((name, row) => {
-      if (!frames.has(row) || !this.enabledFrames.has(name)) return;
+      if (!frames.hasPose(row) || !this.enabledFrames.has(name)) return;
       const fade = fadeForAge(frames.ages[row] ?? 0, timeout);
-      if (fade.alpha > 0) result.push([row, fade]);
+      if (fade.alpha > 0) visibleFrames.push([row, fade]);
     });
-    return result;
+    return visibleFrames;
   }
 
   /** Requests a frame only if the fading of some frame changed by a step. */

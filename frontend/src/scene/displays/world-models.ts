@@ -24,9 +24,9 @@ export class Displacement {
   }
 
   /** Clears the displacement if the actual pose of a displaced model has changed. */
-  clearIfPosesChanged(oldPoses: Float32Array, newPoses: Float32Array, rowOf: ReadonlyMap<string, number>): void {
+  clearIfPosesChanged(oldPoses: Float32Array, newPoses: Float32Array, rowByLink: ReadonlyMap<string, number>): void {
     if (this.models.size === 0) return;
-    for (const [link, row] of rowOf) {
+    for (const [link, row] of rowByLink) {
       if (!this.models.has(modelOf(link))) continue;
       const start = row * POSE_SIZE;
       for (let i = start; i < start + POSE_SIZE; i++) {

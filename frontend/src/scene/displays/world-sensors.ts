@@ -8,14 +8,14 @@ type Color = readonly [number, number, number, number];
 /**
  * Colors (r g b a, 0 to 1) of rays: at the sensor, where rays are dense; at a hit; at the end of a ray without a hit.
  */
-const BEGIN: Color = [0.25, 0.6, 1, 0.12];
-const HIT: Color = [0.25, 0.6, 1, 0.6];
-const MISS: Color = [0.25, 0.6, 1, 0.1];
+const RAY_START_COLOR: Color = [0.25, 0.6, 1, 0.12];
+const RAY_HIT_COLOR: Color = [0.25, 0.6, 1, 0.6];
+const RAY_MISS_COLOR: Color = [0.25, 0.6, 1, 0.1];
 /** The colors of a camera's frustum: of its edges near the camera, and of those far away. */
-const FRUSTUM: Color = [1, 0.75, 0.3, 0.9];
-const FRUSTUM_FAR: Color = [1, 0.75, 0.3, 0.35];
+const FRUSTUM_COLOR: Color = [1, 0.75, 0.3, 0.9];
+const FAR_FRUSTUM_COLOR: Color = [1, 0.75, 0.3, 0.35];
 /** The distance beyond which the frustum's edges are drawn fainter, m. */
-const NEAR_LENGTH = 1;
+const NEAR_LENGTH_M = 1;
 
 /** The lines of a sensor, with the pose of the sensor in its link. */
 interface SensorMark {
@@ -36,10 +36,10 @@ export class WorldSensors {
 
   setScene(scene: WorldScene): void {
     this.dispose();
-    for (const sensor of scene.lidars) this.lidars.set(sensor.name, { ...this.mark(sensor), sensor });
+    for (const sensor of scene.lidars) this.lidars.set(sensor.name, { ...this.createMark(sensor), sensor });
     this.cameras = scene.cameras.map((sensor) => {
-      const mark = this.mark(sensor);
-      mark.lines.setSegments(...frustumOf(sensor));
+      const mark = this.createMark(sensor);
+      mark.lines.setSegments(...createFrustum(sensor));
       return mark;
     });
   }
@@ -47,7 +47,7 @@ export class WorldSensors {
   setRanges({ lidar, ranges }: WorldRays): void {
     const mark = this.lidars.get(lidar);
     if (!mark || ranges.length !== mark.sensor.horizontal.count * mark.sensor.vertical.count) return;
-    mark.lines.setSegments(...raysOf(mark.sensor, ranges));
+    mark.lines.setSegments(...createRays(mark.sensor, ranges));
   }
 
   /** Removes the rays of a lidar. */
@@ -56,10 +56,10 @@ export class WorldSensors {
   }
 
   /** Shows only the sensors that the display's properties select. */
-  style(rows: PropertyRows): void {
+  applyStyle(rows: PropertyRows): void {
     const [rays, frustums] = [rows.text("Visualized", "Lidar Rays"), rows.text("Visualized", "Camera Frustums")];
-    for (const { sensor, lines } of this.lidars.values()) lines.isShown = isChosen(rays, sensor);
-    for (const { sensor, lines } of this.cameras) lines.isShown = isChosen(frustums, sensor);
+    for (const { sensor, lines } of this.lidars.values()) lines.isShown = isSelected(rays, sensor);
+    for (const { sensor, lines } of this.cameras) lines.isShown = isSelected(frustums, sensor);
   }
 
   /** Moves the lines to the poses of their links in the fixed frame. */
@@ -85,7 +85,7 @@ export class WorldSensors {
     this.cameras = [];
   }
 
-  private mark(sensor: LidarScene | CameraScene): SensorMark {
+  private createMark(sensor: LidarScene | CameraScene): SensorMark {
     const localPose = new Matrix4().compose(
       new Vector3().fromArray(sensor.position),
       new Quaternion().fromArray(sensor.quaternion),
@@ -98,12 +98,12 @@ export class WorldSensors {
   }
 }
 
-function isChosen(choice: string, { visualized }: LidarScene | CameraScene): boolean {
+function isSelected(choice: string, { visualized }: LidarScene | CameraScene): boolean {
   return choice === "All" || (choice === "Visualized" && visualized);
 }
 
 /** Returns segments and colors of rays, from the minimum range to the hit, or to the maximum range. */
-function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges: Float32Array): [Float32Array, Float32Array] {
+function createRays({ horizontal, vertical, nearest, farthest }: LidarScene, ranges: Float32Array): [Float32Array, Float32Array] {
   const segments = new Float32Array(ranges.length * 6);
   const colors = new Float32Array(ranges.length * 8);
   for (let row = 0, ray = 0; row < vertical.count; row++) {
@@ -115,8 +115,8 @@ function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges:
       const range = ranges[ray] ?? Infinity;
       const length = Math.min(Math.max(range, nearest), farthest);
       segments.set([nearest * x, nearest * y, nearest * z, length * x, length * y, length * z], ray * 6);
-      colors.set(BEGIN, ray * 8);
-      colors.set(range < farthest ? HIT : MISS, ray * 8 + 4);
+      colors.set(RAY_START_COLOR, ray * 8);
+      colors.set(range < farthest ? RAY_HIT_COLOR : RAY_MISS_COLOR, ray * 8 + 4);
     }
   }
   return [segments, colors];
@@ -125,7 +125,7 @@ function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges:
 /**
  * Returns segments and colors of a camera's frustum: the near and far planes, and the edges from the optical center.
  */
-function frustumOf({ left, right, up: elevation, down, near, far }: CameraScene): [Float32Array, Float32Array] {
+function createFrustum({ left, right, up: elevation, down, near, far }: CameraScene): [Float32Array, Float32Array] {
   const segments: number[] = [];
   const colors: number[] = [];
   const addLine = (start: readonly number[], end: readonly number[], color: Color): void => {
@@ -136,12 +136,12 @@ function frustumOf({ left, right, up: elevation, down, near, far }: CameraScene)
   let [previousY, previousZ] = corners[3];
   for (const [y, z] of corners) {
     const pointAt = (x: number): number[] => [x, x * y, x * z];
-    let distance = Math.min(Math.max(NEAR_LENGTH, near), far);
-    addLine([0, 0, 0], pointAt(distance), FRUSTUM);
+    let distance = Math.min(Math.max(NEAR_LENGTH_M, near), far);
+    addLine([0, 0, 0], pointAt(distance), FRUSTUM_COLOR);
     // Split the line: software renderers drop a line that extends far behind the viewer.
-    for (; distance < far; distance *= 2) addLine(pointAt(distance), pointAt(Math.min(2 * distance, far)), FRUSTUM_FAR);
-    addLine(pointAt(near), [near, near * previousY, near * previousZ], FRUSTUM);
-    addLine(pointAt(far), [far, far * previousY, far * previousZ], FRUSTUM_FAR);
+    for (; distance < far; distance *= 2) addLine(pointAt(distance), pointAt(Math.min(2 * distance, far)), FAR_FRUSTUM_COLOR);
+    addLine(pointAt(near), [near, near * previousY, near * previousZ], FRUSTUM_COLOR);
+    addLine(pointAt(far), [far, far * previousY, far * previousZ], FAR_FRUSTUM_COLOR);
     [previousY, previousZ] = [y, z];
   }
   return [new Float32Array(segments), new Float32Array(colors)];

@@ -9,17 +9,17 @@ import type { OwnLight } from "../surroundings";
 import { WorldLights } from "../world-lights";
 import type { Lighting } from "../light";
 import type { Drawing, DrawingContext } from "./drawing";
-import { findFreePlace } from "./free-place";
+import { findFreePosition } from "./free-position";
 import { Displacement, modelOf } from "./world-models";
 import { WorldSensors } from "./world-sensors";
 
 /** The prefix of the keys of lidar rays. */
-const RAYS = "rays ";
+const RAYS_KEY_PREFIX = "rays ";
 
 /** A box flatter than this share of its width is taken for a ground. */
 const GROUND_FLATNESS = 0.02;
 /** An object this far below the ground has fallen out of the world, m. */
-const FALLEN_Z = -1;
+const FALLEN_Z_M = -1;
 
 /** linkwright/World: the links of all models of a simulated world. */
 export class WorldDrawing implements Drawing {
@@ -27,7 +27,7 @@ export class WorldDrawing implements Drawing {
   private drawing: RobotDrawing | null = null;
   private scene: WorldScene | null = null;
   private poses: { data: DisplayData; content: WorldPoses } | null = null;
-  private rowOf = new Map<string, number>();
+  private rowByLink = new Map<string, number>();
   private readonly displacement = new Displacement();
   private isStyleStale = true;
   private isPoseStale = true;
@@ -39,7 +39,7 @@ export class WorldDrawing implements Drawing {
 
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
-    this.lights = new WorldLights(() => context.affordsStudio());
+    this.lights = new WorldLights(() => context.canAffordStudio());
     this.root.add(this.lights.root, this.sensors.root);
   }
 
@@ -47,7 +47,7 @@ export class WorldDrawing implements Drawing {
     const { content } = data;
     if (content.kind === "world_scene") this.setScene(content);
     else if (content.kind === "world_poses") {
-      if (this.poses) this.displacement.clearIfPosesChanged(this.poses.content.poses, content.poses, this.rowOf);
+      if (this.poses) this.displacement.clearIfPosesChanged(this.poses.content.poses, content.poses, this.rowByLink);
       this.poses = { data, content };
       this.isPoseStale = true;
     } else if (content.kind === "world_rays") {
@@ -58,7 +58,7 @@ export class WorldDrawing implements Drawing {
 
   onDataRemoved(key: string | null): void {
     if (key !== null) {
-      if (key.startsWith(RAYS)) this.sensors.forget(key.slice(RAYS.length));
+      if (key.startsWith(RAYS_KEY_PREFIX)) this.sensors.forget(key.slice(RAYS_KEY_PREFIX.length));
       return;
     }
     this.sensors.dispose();
@@ -75,18 +75,18 @@ export class WorldDrawing implements Drawing {
     if (!drawing) return;
     if (this.poses?.data.pose === null) this.isPoseStale = true; // it follows its frame
     if (this.isStyleStale && this.scene) {
-      this.lights.style(context.display.rows, this.scene);
+      this.lights.applyProperties(context.display.rows, this.scene);
       drawing.applyStyle(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
-      this.lights.shade(drawing.root);
-      this.sensors.style(context.display.rows);
+      this.lights.setShadows(drawing.root);
+      this.sensors.applyStyle(context.display.rows);
     }
     if (this.isStyleStale || this.isPoseStale) {
       this.placeLinks(drawing);
       this.sensors.placeSensors((link) => this.poseOf(link));
-      this.lights.updatePoses(this.computeWorldPose(), (link) => this.poseOf(link), () => this.chooseShadowBox(drawing));
+      this.lights.updatePoses(this.computeWorldPose(), (link) => this.poseOf(link), () => this.updateVisibleBox(drawing));
     }
     this.isStyleStale = this.isPoseStale = false;
-    drawing.chooseDetail(context.camera());
+    drawing.chooseDetail(context.getCamera());
   }
 
   simplify(view: MovingView | null): void {
@@ -101,7 +101,7 @@ export class WorldDrawing implements Drawing {
   /** The world's own light; null while the camera's light is used. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
-    const isWorldLight = this.lights.isOfWorld;
+    const isWorldLight = this.lights.usesWorldLights;
     const { daylight, fog } = this.scene;
     return {
       hasShadows: this.lights.castsShadows,
@@ -134,13 +134,13 @@ export class WorldDrawing implements Drawing {
    */
   computeBoundsByKind(): { robots: Box3; world: Box3 } {
     const [robots, world, allBounds] = [new Box3(), new Box3(), new Box3()];
-    const names = new Set(this.scene?.robots);
+    const robotNames = new Set(this.scene?.robots);
     const boxes = [...(this.drawing?.boundsOfLinks() ?? [])].filter(([, box]) => !box.isEmpty());
-    const lowest = Math.min(0, ...boxes.map(([link, box]) => (names.has(modelOf(link)) ? 0 : box.min.z)));
+    const lowestZ = Math.min(0, ...boxes.map(([link, box]) => (robotNames.has(modelOf(link)) ? 0 : box.min.z)));
     for (const [link, box] of boxes) {
       if (this.isFlat(link)) continue;
-      if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN_Z) robots.union(box);
-      if (box.max.z < FALLEN_Z) continue;
+      if (robotNames.has(modelOf(link)) && box.max.z >= lowestZ + FALLEN_Z_M) robots.union(box);
+      if (box.max.z < FALLEN_Z_M) continue;
       if (!isLikeGround(box)) world.union(box);
       allBounds.union(box);
     }
@@ -148,14 +148,14 @@ export class WorldDrawing implements Drawing {
   }
 
   /** Returns a free position for a model, near the robots, in the frame of the world, m. */
-  findFreePlace(): number[] {
+  findFreePosition(): number[] {
     const { robots } = this.computeBoundsByKind();
     const robotCenter = robots.isEmpty() ? null : robots.getCenter(new Vector3());
-    const names = new Set(this.scene?.robots);
+    const robotNames = new Set(this.scene?.robots);
     // Ignore walls around the robot: their box contains the whole room.
-    const surrounds = (link: string, box: Box3): boolean => robotCenter !== null && !names.has(modelOf(link)) && box.containsPoint(robotCenter);
+    const surrounds = (link: string, box: Box3): boolean => robotCenter !== null && !robotNames.has(modelOf(link)) && box.containsPoint(robotCenter);
     const boxes = [...(this.drawing?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box) && !surrounds(link, box));
-    return findFreePlace(boxes.map(([, box]) => box), this.computeWorldPose(), robotCenter);
+    return findFreePosition(boxes.map(([, box]) => box), this.computeWorldPose(), robotCenter);
   }
 
   /** Returns the pose of the file's camera, which looks along x, in the fixed frame; null if the file has none. */
@@ -197,12 +197,12 @@ export class WorldDrawing implements Drawing {
 
   /** Returns the links of a top-level model of the world. */
   linksOf(model: string): string[] {
-    return [...this.rowOf.keys()].filter((link) => modelOf(link) === model);
+    return [...this.rowByLink.keys()].filter((link) => modelOf(link) === model);
   }
 
   /** Whether a link consists of planes only, as a ground does. */
   isFlat(link: string): boolean {
-    const row = this.rowOf.get(link);
+    const row = this.rowByLink.get(link);
     const visuals = (row === undefined ? null : this.scene?.links[row]?.visuals) ?? [];
     return visuals.every(({ kind }) => kind === "plane");
   }
@@ -246,7 +246,7 @@ export class WorldDrawing implements Drawing {
   }
 
   /** Returns the box for shadows. It is computed from all vertices only when a link has left it, not for each pose. */
-  private chooseShadowBox(drawing: RobotDrawing): Box3 {
+  private updateVisibleBox(drawing: RobotDrawing): Box3 {
     const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? drawing.positionOf(name) ?? [] : []));
     if (this.isStyleStale || !origins.every((origin) => this.shadowBox.containsPoint(origin))) {
       this.visibleBox = drawing.computeBounds();
@@ -257,13 +257,13 @@ export class WorldDrawing implements Drawing {
   }
 
   private placeLinks(drawing: RobotDrawing): void {
-    const { poses: posed, scene } = this;
+    const { poses: posedData, scene } = this;
     const pose = new Matrix4();
-    const hasPoses = posed !== null && posed.content.revision === scene?.revision && readDataPose(this.context.session.frames, posed.data, pose);
+    const hasPoses = posedData !== null && posedData.content.revision === scene?.revision && readDataPose(this.context.session.frames, posedData.data, pose);
     if (!hasPoses) return;
-    const { poses } = posed.content;
+    const { poses } = posedData.content;
     drawing.updatePoses((link, matrix) => {
-      const row = this.rowOf.get(link.name);
+      const row = this.rowByLink.get(link.name);
       if (row === undefined) return false;
       this.displacement.apply(link.name, setPoseMatrix(poses, matrix, row * 7)).premultiply(pose);
       return true;
@@ -275,7 +275,7 @@ export class WorldDrawing implements Drawing {
     this.drawing?.dispose();
     this.scene = scene;
     this.displacement.set(new Map());
-    this.rowOf = new Map(scene.links.map((link, row) => [link.name, row]));
+    this.rowByLink = new Map(scene.links.map((link, row) => [link.name, row]));
     this.drawing = new RobotDrawing(
       { links: scene.links, joints: [] },
       meshes,

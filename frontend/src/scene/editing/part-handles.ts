@@ -7,7 +7,7 @@ import type { Session } from "../../state/session";
 import { RobotModelDrawing } from "../displays/robot-model";
 import { Gizmo } from "../modeling/gizmo";
 import { boundsOf } from "../initial-view";
-import { framePose, setPoseMatrix } from "../pose";
+import { readFramePose, setPoseMatrix } from "../pose";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 
@@ -15,11 +15,11 @@ import type { ToolEvent } from "../tools/tool";
  * Without a grid, dragged values are rounded to these steps: m, rad (a hundredth of a degree), and components of an
  * axis.
  */
-const LENGTH_ROUNDING = 1e-4;
-const ANGLE_ROUNDING = Math.PI / 18000;
+const LENGTH_ROUNDING_M = 1e-4;
+const ANGLE_ROUNDING_RAD = Math.PI / 18000;
 const AXIS_ROUNDING = 1e-4;
 /** The minimum distance between the center of the handles and an edge of the canvas, pixels. */
-const MIN_MARGIN = 40;
+const MIN_MARGIN_PX = 40;
 const AXIS_COLOR = 0xff9d3c;
 const ONE = new Vector3(1, 1, 1);
 
@@ -31,8 +31,8 @@ export class PartHandles {
   private readonly axis = new Line(new BufferGeometry(), new LineBasicMaterial({ color: AXIS_COLOR, depthTest: false }));
   private readonly editing: EditingState;
   /** The handles' pose and the part at the start of a drag; null while no handle is held. */
-  private start: { handles: Matrix4; draft: Draft } | null = null;
-  private previewed: string | null = null;
+  private dragStart: { handles: Matrix4; draft: Draft } | null = null;
+  private previewedDisplay: string | null = null;
   /** The part that the camera was last moved to. The camera does not return to it after the user looks away. */
   private framedPart = "";
 
@@ -46,8 +46,8 @@ export class PartHandles {
     this.axis.visible = false;
     this.axis.frustumCulled = false;
     stage.overlays.add(this.axis);
-    const follow = (): void => this.update();
-    for (const signal of [this.editing.changed, this.editing.draftChanged, session.frames.posesChanged, session.frames.tableChanged]) signal.on(follow);
+    const update = (): void => this.update();
+    for (const signal of [this.editing.changed, this.editing.draftChanged, session.frames.posesChanged, session.frames.tableChanged]) signal.on(update);
     this.update();
   }
 
@@ -63,10 +63,10 @@ export class PartHandles {
     if (event.type === "down" && event.button === "left") {
       const { currentDraft } = this;
       if (!currentDraft || !gizmo.grab(event)) return false;
-      this.start = { handles: gizmo.pose, draft: currentDraft };
+      this.dragStart = { handles: gizmo.pose, draft: currentDraft };
       return true;
     }
-    if (event.type !== "move" || event.left || event.middle || event.right || !gizmo.hover(event)) return false;
+    if (event.type !== "move" || event.isLeftDown || event.isMiddleDown || event.isRightDown || !gizmo.hover(event)) return false;
     this.stage.viewport.canvas.style.cursor = "grab";
     return true;
   }
@@ -111,18 +111,18 @@ export class PartHandles {
    * in view.
    */
   private frameHandles({ part, name, index }: EditablePart): void {
-    const chosenKey = [part, name, index].join(" ");
-    if (chosenKey === this.framedPart) return;
-    this.framedPart = chosenKey;
+    const partKey = [part, name, index].join(" ");
+    if (partKey === this.framedPart) return;
+    this.framedPart = partKey;
     const { x, y } = this.gizmo.positionOf(new Vector3());
     const { width, height } = this.stage.viewport.size;
-    const margin = Math.min(MIN_MARGIN, width / 4, height / 4);
+    const margin = Math.min(MIN_MARGIN_PX, width / 4, height / 4);
     if (x >= margin && y >= margin && x <= width - margin && y <= height - margin) return;
     const box = this.stage.boundsOf(this.editing.current?.display ?? "");
     const padding = box.getSize(new Vector3()).length() / 10;
     box.expandByPoint(new Vector3().setFromMatrixPosition(this.gizmo.pose)).expandByScalar(padding);
     const bounds = boundsOf(box);
-    if (bounds) this.session.view.fit(bounds, this.stage.uncoveredArea.center());
+    if (bounds) this.session.view.fit(bounds, this.stage.uncoveredArea.centerView());
   }
 
   /** Returns the frame of a part's values, in the fixed frame; null without a transform. */
@@ -133,43 +133,43 @@ export class PartHandles {
     const link = part.part === "joint" ? joint?.parent : part.part === "axis" ? joint?.child : part.name;
     const frame = robot?.links.find((candidate) => candidate.name === link)?.frame;
     const pose = new Matrix4();
-    return frame !== undefined && framePose(this.session.frames, this.session.frames.rowOf(frame), pose) ? pose : null;
+    return frame !== undefined && readFramePose(this.session.frames, this.session.frames.rowOf(frame), pose) ? pose : null;
   }
 
   private drag(event: ToolEvent): void {
-    const { start, gizmo, editing } = this;
+    const { dragStart, gizmo, editing } = this;
     const { chosenPart } = editing;
     const base = chosenPart && this.basePoseOf(chosenPart);
-    const steps = editing.snapping.chooseSteps(event.ctrl);
+    const steps = editing.snapping.chooseSteps(event.isCtrlDown);
     gizmo.drag(event, { length: 0, angle: steps.angle });
-    if (!start || !base) return;
+    if (!dragStart || !base) return;
     // Express the motion of the handles in the frame of the part's values.
-    const motion = gizmo.pose.multiply(start.handles.clone().invert());
-    const inBase = base.clone().invert().multiply(motion).multiply(base);
-    editing.move(chosenPart.part === "axis" ? turnAxis(start.draft, inBase) : this.moveDraft(chosenPart, start.draft, inBase, steps));
+    const motion = gizmo.pose.multiply(dragStart.handles.clone().invert());
+    const motionInBase = base.clone().invert().multiply(motion).multiply(base);
+    editing.setDraft(chosenPart.part === "axis" ? rotateAxis(dragStart.draft, motionInBase) : this.moveDraft(chosenPart, dragStart.draft, motionInBase, steps));
   }
 
-  private moveDraft(part: EditablePart, draft: Draft, motion: Matrix4, steps: { length: number; angle: number }): Draft {
-    const oldPose = createPartMatrix(part, draft);
+  private moveDraft(component: EditablePart, draft: Draft, motion: Matrix4, steps: { length: number; angle: number }): Draft {
+    const oldPose = createPartMatrix(component, draft);
     const newPose = motion.clone().multiply(oldPose);
     const [position, rotation] = [new Vector3(), new Quaternion()];
     newPose.decompose(position, rotation, new Vector3());
     if (this.editing.mode === "rotate") {
       const rpy = findNearestRpy([rotation.x, rotation.y, rotation.z, rotation.w], draft.rpy);
-      return { xyz: draft.xyz, rpy: roundChanged(rpy, draft.rpy, steps.angle > 0 ? 0 : ANGLE_ROUNDING) };
+      return { xyz: draft.xyz, rpy: roundChanged(rpy, draft.rpy, steps.angle > 0 ? 0 : ANGLE_ROUNDING_RAD) };
     }
-    const step = steps.length || LENGTH_ROUNDING;
+    const step = steps.length || LENGTH_ROUNDING_M;
     if (this.editing.frame === "parent") return { xyz: roundChanged(position.toArray(), draft.xyz, step), rpy: draft.rpy };
     // Along the part's own axes, round the distance to the grid rather than the position.
     const oldRotation = new Quaternion().setFromRotationMatrix(oldPose);
     const movement = position.sub(new Vector3().fromArray(draft.xyz)).applyQuaternion(oldRotation.clone().invert());
-    const offset = new Vector3(...movement.toArray().map((part) => snap(part, step))).applyQuaternion(oldRotation);
-    return { xyz: roundChanged(offset.toArray().map((part, i) => part + (draft.xyz[i] ?? 0)), draft.xyz, 0), rpy: draft.rpy };
+    const offset = new Vector3(...movement.toArray().map((component) => snap(component, step))).applyQuaternion(oldRotation);
+    return { xyz: roundChanged(offset.toArray().map((component, i) => component + (draft.xyz[i] ?? 0)), draft.xyz, 0), rpy: draft.rpy };
   }
 
   private release(event: ToolEvent): void {
     this.gizmo.release(event);
-    this.start = null;
+    this.dragStart = null;
     this.update();
   }
 
@@ -177,36 +177,36 @@ export class PartHandles {
   private preview(part: EditablePart | null): void {
     const { editing, stage, currentDraft } = this;
     const display = part && (editing.draft || part.part === "collision") ? (editing.current?.display ?? null) : null;
-    if (this.previewed !== null && this.previewed !== display) this.robotOf(this.previewed)?.displace(null);
-    this.previewed = display;
+    if (this.previewedDisplay !== null && this.previewedDisplay !== display) this.findRobotDrawing(this.previewedDisplay)?.displace(null);
+    this.previewedDisplay = display;
     if (display === null || !part || !currentDraft || part.part === "axis" || part.part === "inertial") {
-      if (display !== null) this.robotOf(display)?.displace(null);
+      if (display !== null) this.findRobotDrawing(display)?.displace(null);
       stage.loop.invalidate();
       return;
     }
     const [oldPose, newPose] = [createPartMatrix(part, part), createPartMatrix(part, currentDraft)];
     if (part.part === "joint") {
-      const links = this.listLinksBelow(display, part.name);
-      this.robotOf(display)?.displace({
-        link: (name, matrix) => {
+      const links = this.listDescendantLinks(display, part.name);
+      this.findRobotDrawing(display)?.displace({
+        moveLink: (name, matrix) => {
           const base = links.has(name) ? this.basePoseOf(part) : null;
           if (base) matrix.premultiply(base.clone().multiply(newPose).multiply(oldPose.clone().invert()).multiply(base.invert()));
         },
       });
     } else {
       const twins = editing.parts.filter((candidate) => candidate.part === part.part && candidate.index < part.index && isPlacedAs(candidate, part));
-      this.robotOf(display)?.displace({ shape: { link: part.name, kind: part.part, among: twins.length, from: oldPose, to: newPose } });
+      this.findRobotDrawing(display)?.displace({ movedShape: { link: part.name, kind: part.part, index: twins.length, from: oldPose, to: newPose } });
     }
     stage.loop.invalidate();
   }
 
-  private robotOf(display: string): RobotModelDrawing | null {
+  private findRobotDrawing(display: string): RobotModelDrawing | null {
     const drawing = this.stage.picker.drawingOf(display);
     return drawing instanceof RobotModelDrawing ? drawing : null;
   }
 
   /** Returns the links that a joint carries. */
-  private listLinksBelow(display: string, joint: string): ReadonlySet<string> {
+  private listDescendantLinks(display: string, joint: string): ReadonlySet<string> {
     const joints = this.session.robots.get(display)?.joints ?? [];
     const links = new Set<string>();
     const stack = joints.filter(({ name }) => name === joint).map(({ child }) => child);
@@ -236,9 +236,9 @@ function createPartMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
   return setPoseMatrix([...xyz, ...quaternionOf(rpy)], new Matrix4());
 }
 
-function turnAxis({ xyz }: Draft, motion: Matrix4): Draft {
+function rotateAxis({ xyz }: Draft, motion: Matrix4): Draft {
   const [x, y, z] = new Vector3().fromArray(xyz).normalize().transformDirection(motion).toArray();
-  return { xyz: [x, y, z].map((part) => snap(part, AXIS_ROUNDING)), rpy: [] };
+  return { xyz: [x, y, z].map((component) => snap(component, AXIS_ROUNDING)), rpy: [] };
 }
 
 /** Rounds numbers to a grid, and keeps those that hardly changed. */

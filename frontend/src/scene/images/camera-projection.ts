@@ -1,7 +1,7 @@
 import { Matrix4 } from "three";
 import type { CameraModel } from "../../protocol";
 
-const NEAR = 0.01;
+const NEAR_PLANE_M = 0.01;
 
 /** Returns the share of a window that an image covers along x and y without distortion, by RViz's rule. */
 export function computeZoom(
@@ -10,21 +10,24 @@ export function computeZoom(
   windowWidth: number,
   windowHeight: number,
 ): readonly [number, number] {
-  const image = camera.width / camera.focal_x / (camera.height / camera.focal_y);
-  const aspect = windowWidth / windowHeight;
-  return image > aspect ? [factor, (factor / image) * aspect] : [(factor / aspect) * image, factor];
+  const imageAspect = camera.width / camera.focal_x / (camera.height / camera.focal_y);
+  const windowAspect = windowWidth / windowHeight;
+  return imageAspect > windowAspect ? [factor, (factor / imageAspect) * windowAspect] : [(factor / windowAspect) * imageAspect, factor];
 }
 
-/** Returns the projection of a pinhole camera whose image covers `zoom` of the window; the far plane is at `farDistance`, m. */
+/**
+ * Returns the projection of a pinhole camera whose image covers `zoom` of the window; the far plane is at
+ * `farDistance`, m.
+ */
 export function createProjection(camera: CameraModel, zoom: readonly [number, number], farDistance: number): Matrix4 {
   const { width, height, focal_x, focal_y, center_x, center_y } = camera;
   const x = ((2 * focal_x) / width) * zoom[0];
   const y = ((2 * focal_y) / height) * zoom[1];
   const shiftX = 2 * (0.5 - center_x / width) * zoom[0];
   const shiftY = 2 * (center_y / height - 0.5) * zoom[1];
-  const end = Math.max(farDistance, NEAR * 2);
-  const depth = -(end + NEAR) / (end - NEAR);
-  const shift = (-2 * end * NEAR) / (end - NEAR);
+  const far = Math.max(farDistance, NEAR_PLANE_M * 2);
+  const depth = -(far + NEAR_PLANE_M) / (far - NEAR_PLANE_M);
+  const shift = (-2 * far * NEAR_PLANE_M) / (far - NEAR_PLANE_M);
   return new Matrix4().set(x, 0, shiftX, 0, 0, y, shiftY, 0, 0, 0, depth, shift, 0, 0, -1, 0);
 }
 

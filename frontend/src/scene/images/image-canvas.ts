@@ -20,8 +20,8 @@ interface EncodedImage {
 export class ImageCanvas {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
-  private lastTurn = 0;
-  private newestShown = 0;
+  private lastImageNumber = 0;
+  private newestShownNumber = 0;
   private paintedCount = 0;
   private queuedImage: QueuedImage | null = null;
   private pendingImage: EncodedImage | null = null;
@@ -46,7 +46,7 @@ export class ImageCanvas {
 
   /** Shows an image; calls `onDone` when it is on the canvas, or with false if it cannot be decoded. */
   show(frame: ImageFrame, onDone: (isShown: boolean) => void): void {
-    const imageNumber = ++this.lastTurn;
+    const imageNumber = ++this.lastImageNumber;
     if (frame.encoding !== "file") {
       this.queue(imageNumber, { image: frame, onDone });
       return;
@@ -56,9 +56,9 @@ export class ImageCanvas {
   }
 
   clear(): void {
-    this.newestShown = ++this.lastTurn;
+    this.newestShownNumber = ++this.lastImageNumber;
     this.pendingImage = null;
-    this.discard();
+    this.discardQueued();
     this.canvas.width = this.canvas.height = 0;
   }
 
@@ -70,9 +70,9 @@ export class ImageCanvas {
   /** Decodes one file at a time, because each needs memory for all its pixels. */
   private async decode(): Promise<void> {
     this.isDecoding = true;
-    for (let next = this.pendingImage; next !== null; next = this.pendingImage) {
+    for (let encodedImage = this.pendingImage; encodedImage !== null; encodedImage = this.pendingImage) {
       this.pendingImage = null;
-      const { imageNumber, frame, onDone } = next;
+      const { imageNumber, frame, onDone } = encodedImage;
       try {
         const image = await createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>]));
         this.queue(imageNumber, { image, onDone });
@@ -84,12 +84,12 @@ export class ImageCanvas {
   }
 
   private queue(imageNumber: number, queuedImage: QueuedImage): void {
-    const isOld = imageNumber < this.newestShown;
-    if (!isOld) {
-      this.newestShown = imageNumber;
-      this.discard();
+    const isOutdated = imageNumber < this.newestShownNumber;
+    if (!isOutdated) {
+      this.newestShownNumber = imageNumber;
+      this.discardQueued();
     }
-    if (isOld || queuedImage.image.width === 0 || queuedImage.image.height === 0) {
+    if (isOutdated || queuedImage.image.width === 0 || queuedImage.image.height === 0) {
       if (isBitmap(queuedImage.image)) queuedImage.image.close();
       return;
     }
@@ -97,7 +97,7 @@ export class ImageCanvas {
     this.schedule(this.paint);
   }
 
-  private discard(): void {
+  private discardQueued(): void {
     if (this.queuedImage && isBitmap(this.queuedImage.image)) this.queuedImage.image.close();
     this.queuedImage = null;
   }
@@ -110,8 +110,8 @@ export class ImageCanvas {
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
     if (isBitmap(image)) context.drawImage(image, 0, 0);
-    else context.putImageData(new ImageData(rgbaOf(image), width, height), 0, 0);
-    this.discard();
+    else context.putImageData(new ImageData(convertToRgba(image), width, height), 0, 0);
+    this.discardQueued();
     this.paintedCount += 1;
     onDone(true);
   };
@@ -122,13 +122,13 @@ function isBitmap(image: ImageFrame | ImageBitmap): image is ImageBitmap {
 }
 
 /** Returns red, green, blue and alpha of each pixel. */
-export function rgbaOf({ encoding, data }: ImageFrame): Uint8ClampedArray<ArrayBuffer> {
+export function convertToRgba({ encoding, data }: ImageFrame): Uint8ClampedArray<ArrayBuffer> {
   if (encoding === "rgba") return new Uint8ClampedArray(data);
-  const step = encoding === "gray" ? 1 : 3;
+  const channelCount = encoding === "gray" ? 1 : 3;
   const [green, blue] = encoding === "gray" ? [0, 0] : [1, 2];
-  const result = new Uint32Array(data.length / step);
-  for (let i = 0, position = 0; i < result.length; i++, position += step) {
-    result[i] = 0xff000000 | ((data[position + blue] ?? 0) << 16) | ((data[position + green] ?? 0) << 8) | (data[position] ?? 0);
+  const pixels = new Uint32Array(data.length / channelCount);
+  for (let i = 0, position = 0; i < pixels.length; i++, position += channelCount) {
+    pixels[i] = 0xff000000 | ((data[position + blue] ?? 0) << 16) | ((data[position + green] ?? 0) << 8) | (data[position] ?? 0);
   }
-  return new Uint8ClampedArray(result.buffer);
+  return new Uint8ClampedArray(pixels.buffer);
 }

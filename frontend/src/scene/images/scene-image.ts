@@ -43,12 +43,12 @@ export class SceneImage {
 function toImageData(bytes: Uint8Array, width: number, height: number): ImageData {
   const image = new ImageData(width, height);
   const { data } = image;
-  const row = width * 4;
-  for (let y = 0; y < height; y++) data.set(bytes.subarray((height - 1 - y) * row, (height - y) * row), y * row);
+  const rowBytes = width * 4;
+  for (let y = 0; y < height; y++) data.set(bytes.subarray((height - 1 - y) * rowBytes, (height - y) * rowBytes), y * rowBytes);
   for (let i = 3; i < data.length; i += 4) {
     const alpha = data[i] ?? 0;
     if (alpha === 0 || alpha === 255) continue;
-    for (let part = i - 3; part < i; part++) data[part] = ((data[part] ?? 0) * 255) / alpha;
+    for (let channel = i - 3; channel < i; channel++) data[channel] = ((data[channel] ?? 0) * 255) / alpha;
   }
   return image;
 }

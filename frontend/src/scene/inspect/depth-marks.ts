@@ -2,11 +2,11 @@ import { Color, Matrix4, Vector3, type Object3D } from "three";
 import { CopyBatch } from "../objects/copy-batch";
 import { createAxes, createSphere } from "../objects/geometries";
 import { LabelBatch } from "../objects/label-batch";
-import { linkPose, type InspectedRobot } from "./inspected-robot";
+import { computeLinkPose, type InspectedRobot } from "./inspected-robot";
 
 /** Sizes in units of the robot's mark size. */
 const AXES_SIZE = 0.42;
-const BALL_SIZE = 0.11;
+const SPHERE_SIZE = 0.11;
 const LABEL_SIZE = 0.17;
 /** The size of a frame relative to its parent's, and the minimum size. */
 const SIZE_RATIO = 0.88;
@@ -19,13 +19,13 @@ const HUE_STEP = 0.618;
 /** The frames of links, each with a ball in the color of its level in the tree; deeper ones are smaller. */
 export class DepthMarks {
   private readonly axes: CopyBatch;
-  private readonly balls: CopyBatch;
+  private readonly spheres: CopyBatch;
   private readonly labels = new LabelBatch();
   private levels: number[] = [];
 
   constructor(parent: Object3D) {
     this.axes = new CopyBatch(parent, createAxes(1, 0.06, 8), { isOverlay: true });
-    this.balls = new CopyBatch(parent, createSphere(12), { isOverlay: true });
+    this.spheres = new CopyBatch(parent, createSphere(12), { isOverlay: true });
     parent.add(this.labels.root);
   }
 
@@ -38,21 +38,21 @@ export class DepthMarks {
       }),
     );
     const showsNames = frames.length <= MAX_NAMES;
-    const textOf = (depth: number, link: string): string => (showsNames ? `${depth} ${link}` : String(depth));
+    const labelOf = (depth: number, link: string): string => (showsNames ? `${depth} ${link}` : String(depth));
     this.axes.begin(frames.length);
-    this.balls.begin(frames.length);
-    this.labels.begin(frames.reduce((sum, { depth, link }) => sum + textOf(depth, link).length, 0));
+    this.spheres.begin(frames.length);
+    this.labels.begin(frames.reduce((sum, { depth, link }) => sum + labelOf(depth, link).length, 0));
     this.levels = [];
     const pose = new Matrix4();
     for (const { robot, link, depth } of frames) {
-      if (!linkPose(robot, link, pose)) continue;
-      const size = robot.unit * Math.max(MIN_SIZE, SIZE_RATIO ** depth);
-      this.labels.add(textOf(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL_SIZE * size, 0, 1);
-      this.axes.add(pose.clone().scale(uniformScale(AXES_SIZE * size)));
-      this.balls.add(pose.scale(uniformScale(BALL_SIZE * size)), 0, 1, levelColorOf(depth));
+      if (!computeLinkPose(robot, link, pose)) continue;
+      const size = robot.markSize * Math.max(MIN_SIZE, SIZE_RATIO ** depth);
+      this.labels.add(labelOf(depth, link), new Vector3().setFromMatrixPosition(pose), LABEL_SIZE * size, 0, 1);
+      this.axes.add(pose.clone().scale(createUniformScale(AXES_SIZE * size)));
+      this.spheres.add(pose.scale(createUniformScale(SPHERE_SIZE * size)), 0, 1, levelColorOf(depth));
       this.levels[depth] = (this.levels[depth] ?? 0) + 1;
     }
-    for (const batch of [this.axes, this.balls, this.labels]) batch.end();
+    for (const batch of [this.axes, this.spheres, this.labels]) batch.end();
   }
 
   /** Returns the number of frames drawn on each level. */
@@ -66,6 +66,6 @@ function levelColorOf(depth: number): number {
   return new Color().setHSL((0.58 + depth * HUE_STEP) % 1, 0.85, 0.6).getHex();
 }
 
-function uniformScale(size: number): Vector3 {
+function createUniformScale(size: number): Vector3 {
   return new Vector3(size, size, size);
 }

@@ -6,9 +6,9 @@ import { JointMarks } from "./joint-marks";
 import { MassMarks } from "./mass-marks";
 
 /** The mark size, as a share of the robot's diagonal. */
-const UNIT = 0.2;
+const MARK_SIZE_SHARE = 0.2;
 /** The mark size for a robot without visible parts, m. */
-const DEFAULT_UNIT = 0.2;
+const DEFAULT_MARK_SIZE_M = 0.2;
 
 /** Draws those invisible properties of robots that the user wants to see. It costs nothing while there are none. */
 export class InspectLayer {
@@ -16,7 +16,7 @@ export class InspectLayer {
   private marks: { masses: MassMarks; joints: JointMarks; frames: DepthMarks } | null = null;
   private releases: (() => void)[] = [];
   private showsMasses = false;
-  private readonly units = new Map<string, { revision: number; unit: number }>();
+  private readonly markSizes = new Map<string, { revision: number; markSize: number }>();
 
   /** @param boundsOf - returns the bounding box of a display's objects, in the fixed frame. */
   constructor(
@@ -63,20 +63,20 @@ export class InspectLayer {
     return displays.displays.flatMap(({ id, isEnabled }) => {
       const model = isEnabled ? description.modelOf(id) : undefined;
       if (!model) return [];
-      const implausible = new Set(this.showsMasses ? description.findingsOf(id).map((finding) => finding.link) : []);
-      return [{ model, frames, unit: this.unitOf(id, model.description.revision), implausible, positions: joints.positions }];
+      const implausibleLinks = new Set(this.showsMasses ? description.findingsOf(id).map((finding) => finding.link) : []);
+      return [{ model, frames, markSize: this.computeMarkSize(id, model.description.revision), implausibleLinks, positions: joints.positions }];
     });
   }
 
   /** Returns the mark size. Marks keep their size while the robot moves; a new description may change it. */
-  private unitOf(display: string, revision: number): number {
+  private computeMarkSize(display: string, revision: number): number {
     const { scale } = this.session.inspect;
-    const knownUnit = this.units.get(display);
-    if (knownUnit?.revision === revision) return knownUnit.unit * scale;
+    const knownSize = this.markSizes.get(display);
+    if (knownSize?.revision === revision) return knownSize.markSize * scale;
     const box = this.boundsOf(display);
-    const unit = box.isEmpty() ? DEFAULT_UNIT : UNIT * box.getSize(new Vector3()).length();
-    if (!box.isEmpty()) this.units.set(display, { revision, unit });
-    return unit * scale;
+    const markSize = box.isEmpty() ? DEFAULT_MARK_SIZE_M : MARK_SIZE_SHARE * box.getSize(new Vector3()).length();
+    if (!box.isEmpty()) this.markSizes.set(display, { revision, markSize });
+    return markSize * scale;
   }
 
   private updateSubscriptions(): void {

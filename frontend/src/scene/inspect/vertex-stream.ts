@@ -12,25 +12,25 @@ import {
   type Vector3,
 } from "three";
 
-const FIRST_CAPACITY = 256;
+const INITIAL_CAPACITY = 256;
 /** Marks are drawn after the robot and before labels. */
 const RENDER_ORDER = 6;
 
 /** Lines or triangles that change in every frame, unlit and drawn over everything, in one draw call. */
 export class VertexStream {
   private readonly object: LineSegments | Mesh;
-  private positions = new Float32Array(FIRST_CAPACITY * 3);
-  private colors = new Float32Array(FIRST_CAPACITY * 4);
+  private positions = new Float32Array(INITIAL_CAPACITY * 3);
+  private colors = new Float32Array(INITIAL_CAPACITY * 4);
   private count = 0;
   private readonly color = new Color();
   private alpha = 1;
 
   constructor(parent: Object3D, kind: "lines" | "triangles") {
-    const look = { vertexColors: true, transparent: true, depthTest: false, depthWrite: false };
+    const style = { vertexColors: true, transparent: true, depthTest: false, depthWrite: false };
     this.object =
       kind === "lines"
-        ? new LineSegments(new BufferGeometry(), new LineBasicMaterial(look))
-        : new Mesh(new BufferGeometry(), new MeshBasicMaterial({ ...look, side: DoubleSide }));
+        ? new LineSegments(new BufferGeometry(), new LineBasicMaterial(style))
+        : new Mesh(new BufferGeometry(), new MeshBasicMaterial({ ...style, side: DoubleSide }));
     this.object.frustumCulled = false;
     this.object.matrixAutoUpdate = false;
     this.object.visible = false;

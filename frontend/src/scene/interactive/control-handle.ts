@@ -12,8 +12,8 @@ import {
   type Raycaster,
 } from "three";
 import type { InteractiveControl, MarkerShape } from "../../protocol";
-import { makeMarkerObject, type MarkerObject } from "../markers/marker-object";
-import { isSolid, SolidMarkers, surfacesOf } from "../markers/solid-markers";
+import { createMarkerObject, type MarkerObject } from "../markers/marker-object";
+import { isSolid, SolidMarkers, createMarkerSurfaces } from "../markers/solid-markers";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { setPoseMatrix } from "../pose";
 
@@ -30,7 +30,7 @@ export class ControlHandle {
   private readonly solids = new SolidMarkers(this.root);
   private readonly objects: MarkerObject[] = [];
   private readonly ownOrientation: Quaternion;
-  private readonly framed = new Quaternion();
+  private readonly controlOrientation = new Quaternion();
   private isBright = false;
 
   constructor(
@@ -42,7 +42,7 @@ export class ControlHandle {
     this.ownOrientation = new Quaternion(x, y, z, w);
     for (const marker of control.markers) {
       if (isSolid(marker.shape)) continue;
-      const object = makeMarkerObject(marker, meshes, onChanged);
+      const object = createMarkerObject(marker, meshes, onChanged);
       const pose = poseOf(marker);
       pose.decompose(object.root.position, object.root.quaternion, new Vector3());
       this.objects.push(object);
@@ -62,7 +62,7 @@ export class ControlHandle {
 
   /** The orientation in the reference frame, with the control's axis as x. */
   get orientation(): Quaternion {
-    return this.framed.clone().multiply(this.ownOrientation);
+    return this.controlOrientation.clone().multiply(this.ownOrientation);
   }
 
   set isHighlighted(isBright: boolean) {
@@ -79,20 +79,20 @@ export class ControlHandle {
   updatePose(position: Vector3, orientation: Quaternion, camera: Camera, reference: Matrix4): void {
     this.root.position.copy(position);
     const mode = this.control.orientation_mode;
-    if (mode === "inherit") this.framed.copy(orientation);
+    if (mode === "inherit") this.controlOrientation.copy(orientation);
     else if (mode === "fixed") {
-      this.framed.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.ownOrientation), this.rotation);
-    } else this.framed.copy(computeFacingOrientation(this.ownOrientation, camera, reference));
+      this.controlOrientation.setFromAxisAngle(new Vector3(1, 0, 0).applyQuaternion(this.ownOrientation), this.rotation);
+    } else this.controlOrientation.copy(computeFacingOrientation(this.ownOrientation, camera, reference));
     const isIndependent = mode === "view_facing" && this.control.independent_orientation;
-    this.root.quaternion.copy(isIndependent ? orientation : this.framed);
+    this.root.quaternion.copy(isIndependent ? orientation : this.controlOrientation);
   }
 
   /** Returns the intersection of a ray with its markers, in the fixed frame. */
-  hit(ray: Raycaster): Intersection | null {
+  intersect(ray: Raycaster): Intersection | null {
     this.root.updateWorldMatrix(true, true);
     const objects: Object3D[] = this.objects.map((object) => object.root);
     for (const marker of this.control.markers) {
-      if (isSolid(marker.shape)) objects.push(...surfacesOf(marker, poseOf(marker).premultiply(this.root.matrixWorld)));
+      if (isSolid(marker.shape)) objects.push(...createMarkerSurfaces(marker, poseOf(marker).premultiply(this.root.matrixWorld)));
     }
     return ray.intersectObjects(objects, true)[0] ?? null;
   }

@@ -14,8 +14,8 @@ export interface DragEvent {
   /** The movement since the last event, pixels. */
   dx: number;
   dy: number;
-  shift: boolean;
-  ctrl: boolean;
+  isShiftDown: boolean;
+  isCtrlDown: boolean;
   /** The axes of the camera, unit vectors. */
   right: Vector3;
   up: Vector3;
@@ -32,7 +32,7 @@ const MIN_PLANE_SINE = 0.05;
 
 /** A drag of an interactive marker's control, by the rules of RViz's InteractiveMarkerControl. */
 export class Drag {
-  private readonly start: MarkerPose;
+  private readonly startPose: MarkerPose;
   private readonly grabPoint: Vector3;
   /** The control's axis at the start of the drag: the direction of motion, or the axis of rotation. */
   private readonly axis: Vector3;
@@ -44,38 +44,38 @@ export class Drag {
    */
   constructor(
     private readonly mode: InteractiveControl["mode"],
-    start: MarkerPose,
+    startPose: MarkerPose,
     grab: Vector3,
     orientation: Quaternion,
   ) {
-    this.start = copyOf(start);
-    this.pose = copyOf(start);
+    this.startPose = copyPose(startPose);
+    this.pose = copyPose(startPose);
     this.grabPoint = grab.clone();
     this.axis = new Vector3(1, 0, 0).applyQuaternion(orientation).normalize();
   }
 
   /** Returns the marker's pose after a movement of the mouse; null if the movement does not define one. */
   followPointer(event: DragEvent): MarkerPose | null {
-    const hasMoved = this.move(event);
-    return hasMoved ? copyOf(this.pose) : null;
+    const hasMoved = this.applyMovement(event);
+    return hasMoved ? copyPose(this.pose) : null;
   }
 
-  private move(event: DragEvent): boolean {
+  private applyMovement(event: DragEvent): boolean {
     switch (this.mode) {
       case "move_axis":
         return this.moveAlongAxis(event.ray);
       case "move_plane":
         return this.moveInPlane(event.ray, this.axis);
       case "rotate_axis":
-        return this.turnAboutAxis(event.ray);
+        return this.rotateAboutAxis(event.ray);
       case "move_rotate":
-        return this.moveAndTurn(event.ray);
+        return this.moveAndRotate(event.ray);
       case "move_3d":
         return this.moveFreely(event);
       case "rotate_3d":
-        return this.turnFreely(event);
+        return this.rotateFreely(event);
       case "move_rotate_3d":
-        return event.ctrl ? this.turnFreely(event) : this.moveFreely(event);
+        return event.isCtrlDown ? this.rotateFreely(event) : this.moveFreely(event);
       case "none":
       case "menu":
       case "button":
@@ -86,30 +86,30 @@ export class Drag {
   private moveAlongAxis(ray: Ray): boolean {
     const distance = computeDistanceAlongAxis(ray, this.grabPoint, this.axis);
     if (distance === null) return false;
-    this.pose.position.copy(this.start.position).addScaledVector(this.axis, distance);
+    this.pose.position.copy(this.startPose.position).addScaledVector(this.axis, distance);
     return true;
   }
 
   private moveInPlane(ray: Ray, normal: Vector3): boolean {
-    const point = pointOnPlane(ray, this.grabPoint, normal);
+    const point = intersectPlane(ray, this.grabPoint, normal);
     if (!point) return false;
-    this.pose.position.copy(point).sub(this.grabPoint).add(this.start.position);
+    this.pose.position.copy(point).sub(this.grabPoint).add(this.startPose.position);
     return true;
   }
 
-  private turnAboutAxis(ray: Ray): boolean {
-    const center = this.findNearestOnAxis(this.start.position);
-    const point = pointOnPlane(ray, center, this.axis);
+  private rotateAboutAxis(ray: Ray): boolean {
+    const center = this.findNearestOnAxis(this.startPose.position);
+    const point = intersectPlane(ray, center, this.axis);
     if (!point) return false;
     const rotation = computeRotationBetween(this.grabPoint.clone().sub(center), point.sub(center), this.axis);
-    this.pose.orientation.copy(rotation).multiply(this.start.orientation);
+    this.pose.orientation.copy(rotation).multiply(this.startPose.orientation);
     return true;
   }
 
   /** Moves and turns the marker like a cart on a string: the grabbed point follows the mouse. */
-  private moveAndTurn(ray: Ray): boolean {
+  private moveAndRotate(ray: Ray): boolean {
     const center = this.findNearestOnAxis(this.pose.position);
-    const point = pointOnPlane(ray, center, this.axis);
+    const point = intersectPlane(ray, center, this.axis);
     if (!point) return false;
     const arm = this.grabPoint.clone().sub(center);
     const offset = point.clone().sub(center);
@@ -122,19 +122,19 @@ export class Drag {
   }
 
   private moveFreely(event: DragEvent): boolean {
-    if (!event.shift) return this.moveInPlane(event.ray, event.forward);
+    if (!event.isShiftDown) return this.moveInPlane(event.ray, event.forward);
     const distance = event.ray.origin.distanceTo(this.pose.position);
-    const step = -largerOf(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
-    for (const point of [this.pose.position, this.start.position, this.grabPoint]) {
+    const step = -pickLarger(-event.dx, event.dy) * DEPTH_PER_PIXEL * distance;
+    for (const point of [this.pose.position, this.startPose.position, this.grabPoint]) {
       point.addScaledVector(event.ray.direction, step);
     }
     return true;
   }
 
-  private turnFreely(event: DragEvent): boolean {
+  private rotateFreely(event: DragEvent): boolean {
     const angleOf = (pixels: number): number => (pixels / PIXELS_PER_TURN) * 2 * Math.PI;
     const rotation = new Quaternion();
-    if (event.shift) rotation.setFromAxisAngle(event.forward, angleOf(largerOf(event.dx, event.dy)));
+    if (event.isShiftDown) rotation.setFromAxisAngle(event.forward, angleOf(pickLarger(event.dx, event.dy)));
     else {
       rotation.setFromAxisAngle(event.up, angleOf(event.dx));
       rotation.multiply(new Quaternion().setFromAxisAngle(event.right, angleOf(event.dy)));
@@ -150,32 +150,32 @@ export class Drag {
   }
 }
 
-function copyOf(pose: MarkerPose): MarkerPose {
+function copyPose(pose: MarkerPose): MarkerPose {
   return { position: pose.position.clone(), orientation: pose.orientation.clone() };
 }
 
 /** Returns the distance along the axis through `origin` to the point nearest to the ray; null if they are parallel. */
 export function computeDistanceAlongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
   const offset = origin.clone().sub(ray.origin);
-  const slant = axis.dot(ray.direction);
-  const sine2 = 1 - slant * slant;
-  if (sine2 < 1e-6) return null;
-  return (slant * offset.dot(ray.direction) - offset.dot(axis)) / sine2;
+  const cosine = axis.dot(ray.direction);
+  const sineSquared = 1 - cosine * cosine;
+  if (sineSquared < 1e-6) return null;
+  return (cosine * offset.dot(ray.direction) - offset.dot(axis)) / sineSquared;
 }
 
-function pointOnPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null {
+function intersectPlane(ray: Ray, point: Vector3, normal: Vector3): Vector3 | null {
   if (Math.abs(normal.dot(ray.direction)) < MIN_PLANE_SINE) return null;
   return ray.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, point), new Vector3());
 }
 
 /** Returns the rotation about `axis` from the direction `start` to the direction `end`. */
 export function computeRotationBetween(start: Vector3, end: Vector3, axis: Vector3): Quaternion {
-  const [a, b] = [start, end].map((direction) => direction.clone().projectOnPlane(axis));
-  if (!a || !b) return new Quaternion();
-  const angle = Math.atan2(axis.dot(a.clone().cross(b)), a.dot(b));
+  const [startInPlane, endInPlane] = [start, end].map((direction) => direction.clone().projectOnPlane(axis));
+  if (!startInPlane || !endInPlane) return new Quaternion();
+  const angle = Math.atan2(axis.dot(startInPlane.clone().cross(endInPlane)), startInPlane.dot(endInPlane));
   return new Quaternion().setFromAxisAngle(axis, angle);
 }
 
-function largerOf(a: number, b: number): number {
+function pickLarger(a: number, b: number): number {
   return Math.abs(a) > Math.abs(b) ? a : b;
 }

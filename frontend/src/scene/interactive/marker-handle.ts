@@ -18,7 +18,7 @@ const AXES_RADIUS = 0.05;
  * scale.
  */
 const TITLE_HEIGHT = 0.15;
-const TITLE_ABOVE = 1.4;
+const TITLE_OFFSET = 1.4;
 
 /** The display's options. */
 export interface MarkerOptions {
@@ -53,8 +53,8 @@ export class MarkerHandle {
     this.controls = shape.controls.map((control) => new ControlHandle(control, meshes, onChanged));
     for (const control of this.controls) this.frame.add(control.root);
     this.axes = new AxesBatch(this.frame, AXES_LENGTH * shape.scale, AXES_RADIUS * shape.scale);
-    const letters = TITLE_HEIGHT * shape.scale;
-    this.title = shape.description === "" ? null : createTextSprite(shape.description, letters, [1, 1, 1, 1]);
+    const letterHeight = TITLE_HEIGHT * shape.scale;
+    this.title = shape.description === "" ? null : createTextSprite(shape.description, letterHeight, [1, 1, 1, 1]);
     if (this.title) this.frame.add(this.title);
     this.setPose(shape.pose);
   }
@@ -79,7 +79,7 @@ export class MarkerHandle {
   }
 
   /** Applies a pose from the server, except while the user drags the marker. */
-  move(data: DisplayData, pose: readonly number[]): void {
+  setServerPose(data: DisplayData, pose: readonly number[]): void {
     this.data = data;
     if (!this.drag) this.setPose(pose);
   }
@@ -103,18 +103,18 @@ export class MarkerHandle {
     else this.aid.hide();
     if (this.title) {
       this.title.visible = options.showsDescriptions;
-      this.title.position.copy(position).add(new Vector3(0, 0, TITLE_ABOVE * this.shape.scale));
+      this.title.position.copy(position).add(new Vector3(0, 0, TITLE_OFFSET * this.shape.scale));
     }
     return true;
   }
 
   /** Returns the nearest control that a ray in the fixed frame hits. */
-  hit(ray: Raycaster): { control: number; distance: number; point: Vector3 } | null {
+  findNearestHit(ray: Raycaster): { control: number; distance: number; point: Vector3 } | null {
     let nearestHit: { control: number; distance: number; point: Vector3 } | null = null;
-    this.controls.forEach((control, number) => {
-      const hit = control.isActive && control.root.visible ? control.hit(ray) : null;
+    this.controls.forEach((control, index) => {
+      const hit = control.isActive && control.root.visible ? control.intersect(ray) : null;
       if (hit && (nearestHit === null || hit.distance < nearestHit.distance)) {
-        nearestHit = { control: number, distance: hit.distance, point: hit.point };
+        nearestHit = { control: index, distance: hit.distance, point: hit.point };
       }
     });
     return nearestHit;
@@ -128,7 +128,7 @@ export class MarkerHandle {
   }
 
   /** Follows the mouse; returns true if the marker moved. */
-  follow(event: ScenePointer, camera: Camera): boolean {
+  followPointer(event: ScenePointer, camera: Camera): boolean {
     if (!this.drag) return false;
     const inverse = this.computeInverseMatrix();
     const ray = event.ray.ray.clone().applyMatrix4(inverse);
@@ -137,8 +137,8 @@ export class MarkerHandle {
       ray: new Ray(ray.origin, ray.direction.normalize()),
       dx: event.dx,
       dy: event.dy,
-      shift: event.shift,
-      ctrl: event.ctrl,
+      isShiftDown: event.isShiftDown,
+      isCtrlDown: event.isCtrlDown,
       right: new Vector3(1, 0, 0).applyQuaternion(rotation),
       up: new Vector3(0, 1, 0).applyQuaternion(rotation),
       forward: new Vector3(0, 0, -1).applyQuaternion(rotation),

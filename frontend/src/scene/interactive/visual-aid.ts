@@ -3,8 +3,8 @@ import type { InteractiveControl } from "../../protocol";
 import { ThinLines } from "../objects/thin-lines";
 
 /** The length of the line to each side, in meters. */
-const REACH = 1000;
-const MODES: ReadonlySet<InteractiveControl["mode"]> = new Set<InteractiveControl["mode"]>([
+const HALF_LENGTH_M = 1000;
+const MODES_WITH_LINE: ReadonlySet<InteractiveControl["mode"]> = new Set<InteractiveControl["mode"]>([
   "move_axis",
   "rotate_axis",
   "move_rotate",
@@ -23,10 +23,10 @@ export class VisualAid {
   /** Shows the line of a control, if its mode has one; the x axis of `orientation` is the control's axis. */
   show(control: InteractiveControl, position: Vector3, orientation: Quaternion): void {
     this.hide();
-    if (!MODES.has(control.mode) || control.orientation_mode === "view_facing") return;
+    if (!MODES_WITH_LINE.has(control.mode) || control.orientation_mode === "view_facing") return;
     if (!this.line) {
       this.line = new ThinLines();
-      this.line.setSegments(new Float32Array([-REACH, 0, 0, REACH, 0, 0]));
+      this.line.setSegments(new Float32Array([-HALF_LENGTH_M, 0, 0, HALF_LENGTH_M, 0, 0]));
     }
     this.parent.add(this.line.root);
     this.line.root.position.copy(position);

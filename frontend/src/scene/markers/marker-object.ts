@@ -11,9 +11,9 @@ import {
   type Sprite,
 } from "three";
 import type { MarkerMesh, MarkerShape } from "../../protocol";
-import { loadTexture, OPAQUE_FROM } from "../materials";
+import { loadTexture, MIN_OPAQUE_ALPHA } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
-import type { OwnMaterial } from "../meshes/mesh-template";
+import type { FileMaterial } from "../meshes/mesh-template";
 import { PointBatch } from "../objects/point-batch";
 import { WideLines } from "../objects/wide-lines";
 import { createTextSprite } from "./text-sprite";
@@ -26,8 +26,10 @@ export interface MarkerObject {
   dispose(): void;
 }
 
-/** Creates the object of a marker; `onChanged` is called when a mesh or texture has arrived, with the problem or null. */
-export function makeMarkerObject(
+/**
+ * Creates the object of a marker; `onChanged` is called when a mesh or texture has arrived, with the problem or null.
+ */
+export function createMarkerObject(
   marker: MarkerShape,
   meshes: MeshLibrary,
   onChanged: (problem: string | null) => void,
@@ -83,14 +85,14 @@ class TrianglesMarker implements MarkerObject {
     geometry.computeVertexNormals();
     const colors = createVertexColors(marker);
     const alpha = color[3] ?? 1;
-    let isSeeThrough = alpha < OPAQUE_FROM;
+    let isTranslucent = alpha < MIN_OPAQUE_ALPHA;
     if (colors) {
       geometry.setAttribute("color", new BufferAttribute(colors, 4));
-      for (let i = 3; i < colors.length; i += 4) isSeeThrough ||= (colors[i] ?? 1) < OPAQUE_FROM;
+      for (let i = 3; i < colors.length; i += 4) isTranslucent ||= (colors[i] ?? 1) < MIN_OPAQUE_ALPHA;
     }
-    const look = { side: DoubleSide, transparent: isSeeThrough, depthWrite: !isSeeThrough, vertexColors: colors !== null };
+    const style = { side: DoubleSide, transparent: isTranslucent, depthWrite: !isTranslucent, vertexColors: colors !== null };
     // As in RViz, triangles with individual colors are not lit.
-    const material = colors ? new MeshBasicMaterial(look) : new MeshLambertMaterial({ ...look, opacity: alpha });
+    const material = colors ? new MeshBasicMaterial(style) : new MeshLambertMaterial({ ...style, opacity: alpha });
     if (!colors && texture === null) material.color.setRGB(color[0] ?? 0, color[1] ?? 0, color[2] ?? 0);
     this.root = new Mesh(geometry, material);
     this.root.scale.set(scale[0] ?? 1, scale[1] ?? 1, scale[2] ?? 1);
@@ -171,15 +173,15 @@ class MeshMarker implements MarkerObject {
   }
 
   private async load(mesh: MarkerMesh, library: MeshLibrary, onChanged: (problem: string | null) => void): Promise<void> {
-    const bytes = mesh.data ? new Blob([new Uint8Array(mesh.data)]) : null;
-    const url = bytes ? URL.createObjectURL(bytes) : (mesh.url ?? "");
+    const blob = mesh.data ? new Blob([new Uint8Array(mesh.data)]) : null;
+    const url = blob ? URL.createObjectURL(blob) : (mesh.url ?? "");
     let problem: string | null = null;
     try {
       const template = await library.load(url, mesh.format);
       problem = template.problem;
       if (!this.isDisposed) {
         for (const { geometry, materials } of template.parts) {
-          const paintedMaterials = materials.map((material) => this.paint(mesh.embedded ? material : null));
+          const paintedMaterials = materials.map((material) => this.createMaterial(mesh.embedded ? material : null));
           this.materials.push(...paintedMaterials);
           const [material] = paintedMaterials;
           this.root.add(new Mesh(geometry, paintedMaterials.length === 1 && material ? material : paintedMaterials));
@@ -188,7 +190,7 @@ class MeshMarker implements MarkerObject {
     } catch (error) {
       problem = error instanceof Error ? error.message : String(error);
     }
-    if (bytes) URL.revokeObjectURL(url);
+    if (blob) URL.revokeObjectURL(url);
     this.isSettled = true;
     if (!this.isDisposed) onChanged(problem);
   }
@@ -197,15 +199,15 @@ class MeshMarker implements MarkerObject {
    * Returns a material by RViz's rule: the marker's color tints the mesh's own materials, and is ignored for them if
    * it is all zero.
    */
-  private paint(embeddedMaterial: OwnMaterial | null): Material {
+  private createMaterial(embeddedMaterial: FileMaterial | null): Material {
     let [r = 0, g = 0, b = 0, a = 0] = this.marker.color;
     if (this.marker.mesh?.embedded === true && r === 0 && g === 0 && b === 0 && a === 0) r = g = b = a = 1;
     const [ownR, ownG, ownB] = embeddedMaterial?.color ?? [1, 1, 1];
     const alpha = a * (embeddedMaterial?.opacity ?? 1);
     const material = new MeshLambertMaterial({
       opacity: alpha,
-      transparent: alpha < OPAQUE_FROM,
-      depthWrite: alpha >= OPAQUE_FROM,
+      transparent: alpha < MIN_OPAQUE_ALPHA,
+      depthWrite: alpha >= MIN_OPAQUE_ALPHA,
       map: embeddedMaterial?.map ?? null,
       vertexColors: embeddedMaterial?.vertexColors ?? false,
       side: DoubleSide,
@@ -217,18 +219,18 @@ class MeshMarker implements MarkerObject {
 
 /** Returns red, green, blue and alpha of each vertex, if the marker has a color for each vertex or each triangle. */
 function createVertexColors({ points, colors, color }: MarkerShape): Float32Array | null {
-  const corners = points.length / 3;
+  const vertexCount = points.length / 3;
   const colorCount = colors.length / 4;
-  if (colorCount === 0 || (colorCount !== corners && colorCount !== corners / 3)) return null;
-  const every = corners / colorCount;
+  if (colorCount === 0 || (colorCount !== vertexCount && colorCount !== vertexCount / 3)) return null;
+  const verticesPerColor = vertexCount / colorCount;
   const alpha = color[3] ?? 1;
-  const result = new Float32Array(corners * 4);
-  for (let i = 0; i < corners; i++) {
-    const offset = Math.floor(i / every) * 4;
-    result.set(colors.subarray(offset, offset + 4), i * 4);
-    result[i * 4 + 3] = alpha * (colors[offset + 3] ?? 1);
+  const vertexColors = new Float32Array(vertexCount * 4);
+  for (let i = 0; i < vertexCount; i++) {
+    const offset = Math.floor(i / verticesPerColor) * 4;
+    vertexColors.set(colors.subarray(offset, offset + 4), i * 4);
+    vertexColors[i * 4 + 3] = alpha * (colors[offset + 3] ?? 1);
   }
-  return result;
+  return vertexColors;
 }
 
 function packRgb(r: number, g: number, b: number): number {

@@ -1,12 +1,12 @@
 import { CanvasTexture, LinearFilter, NoColorSpace, Sprite, SpriteMaterial } from "three";
 
 const FONT_PX = 48;
-const LINE_PX = 58;
+const LINE_HEIGHT_PX = 58;
 const PADDING_PX = 6;
 /** The outline around letters, in a contrasting color so that they are legible on any background. */
-const OUTLINE_PX = 6;
-const OUTLINES = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
-const LIGHT = 0.4;
+const OUTLINE_WIDTH_PX = 6;
+const OUTLINE_COLORS = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
+const LIGHT_LUMINANCE = 0.4;
 /** The maximum width and height of a texture, px; larger ones would exceed the limit of GPUs. */
 const MAX_TEXTURE_PX = 4096;
 
@@ -20,17 +20,17 @@ export function createTextSprite(text: string, height: number, color: readonly n
   if (context) context.font = font;
   const width = Math.max(1, ...lines.map((line) => context?.measureText(line).width ?? 1));
   canvas.width = Math.min(MAX_TEXTURE_PX, Math.ceil(width) + 2 * PADDING_PX);
-  canvas.height = Math.min(MAX_TEXTURE_PX, lines.length * LINE_PX + 2 * PADDING_PX);
+  canvas.height = Math.min(MAX_TEXTURE_PX, lines.length * LINE_HEIGHT_PX + 2 * PADDING_PX);
   if (context) {
     context.font = font;
     context.fillStyle = `rgb(${[r, g, b].map((channel) => Math.round(255 * channel)).join(" ")})`;
-    context.strokeStyle = 0.3 * r + 0.59 * g + 0.11 * b > LIGHT ? OUTLINES.dark : OUTLINES.light;
-    context.lineWidth = OUTLINE_PX;
+    context.strokeStyle = 0.3 * r + 0.59 * g + 0.11 * b > LIGHT_LUMINANCE ? OUTLINE_COLORS.dark : OUTLINE_COLORS.light;
+    context.lineWidth = OUTLINE_WIDTH_PX;
     context.lineJoin = "round";
     context.textBaseline = "middle";
     context.textAlign = "center";
     for (const [row, line] of lines.entries()) {
-      const position = [canvas.width / 2, PADDING_PX + (row + 0.5) * LINE_PX] as const;
+      const position = [canvas.width / 2, PADDING_PX + (row + 0.5) * LINE_HEIGHT_PX] as const;
       context.strokeText(line, ...position);
       context.fillText(line, ...position);
     }

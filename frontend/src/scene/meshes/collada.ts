@@ -4,7 +4,7 @@ import { strings } from "../../strings";
 import type { MeshFiles } from "./mesh-files";
 import { MeshError } from "./mesh-error";
 import { flatten, createTemplate, type MeshTemplate } from "./mesh-template";
-import { TextureWait } from "./texture-wait";
+import { TextureTracker } from "./texture-tracker";
 
 /**
  * Reads COLLADA. Its unit is applied, but not its up axis, because RViz tells Assimp to ignore it: z in the file is z
@@ -15,10 +15,10 @@ import { TextureWait } from "./texture-wait";
 export async function readCollada(data: ArrayBuffer, url: string, files: MeshFiles): Promise<MeshTemplate> {
   const xmlText = new TextDecoder().decode(data).replace(/<up_axis>\s*\w+\s*<\/up_axis>/, "<up_axis>Y_UP</up_axis>");
   const text = checkXml(xmlText);
-  const wait = new TextureWait(files);
-  const collada = new ColladaLoader(wait.manager).parse(text, LoaderUtils.extractUrlBase(url));
+  const textureTracker = new TextureTracker(files);
+  const collada = new ColladaLoader(textureTracker.manager).parse(text, LoaderUtils.extractUrlBase(url));
   if (!collada) throw new MeshError(strings.meshes.dae.notXml(""));
-  const problem = await wait.settle();
+  const problem = await textureTracker.settle();
   // The loader replaces a missing material by a magenta one without a name.
   return createTemplate("DAE", flatten(collada.scene, (material) => material.name !== ""), problem);
 }
@@ -27,12 +27,12 @@ export async function readCollada(data: ArrayBuffer, url: string, files: MeshFil
 function checkXml(xmlText: string): string {
   let text = xmlText;
   let xml = parseXml(text);
-  const broken = findParserError(xml);
-  if (broken) {
+  const parserError = findParserError(xml);
+  if (parserError) {
     text = fixXml(xmlText);
     xml = parseXml(text);
     // Browsers word the error differently, but all of them have the line as the first number after "line".
-    const line = /line\D*(\d+)/i.exec(broken.textContent)?.[1] ?? "";
+    const line = /line\D*(\d+)/i.exec(parserError.textContent)?.[1] ?? "";
     if (findParserError(xml)) throw new MeshError(strings.meshes.dae.notXml(line));
   }
   const root = xml.documentElement.tagName;

@@ -21,11 +21,11 @@ export async function readMesh(data: ArrayBuffer, format: string, url: string, f
   }
 }
 
-type Reader = (data: ArrayBuffer, url: string, files: MeshFiles) => Promise<MeshTemplate>;
+type MeshReader = (data: ArrayBuffer, url: string, files: MeshFiles) => Promise<MeshTemplate>;
 
-const readStl: Reader = async (data) => (await import("./stl")).readStl(data);
+const readStl: MeshReader = async (data) => (await import("./stl")).readStl(data);
 
-const READERS: ReadonlyMap<string, Reader> = new Map<string, Reader>([
+const READERS: ReadonlyMap<string, MeshReader> = new Map<string, MeshReader>([
   ["stl", readStl],
   ["stlb", readStl],
   ["dae", async (data, url, files) => (await import("./collada")).readCollada(data, url, files)],

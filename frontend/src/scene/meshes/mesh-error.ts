@@ -5,7 +5,7 @@
 export class MeshError extends Error {}
 
 /** Returns a count with spaces between thousands: 40 000 000. */
-export function countText(count: number): string {
+export function formatCount(count: number): string {
   return count.toLocaleString("en").replaceAll(",", " ");
 }
 

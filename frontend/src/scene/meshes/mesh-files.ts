@@ -7,7 +7,7 @@ export interface MeshFiles {
 }
 
 /** The files of the server; each fetch checks whether the file has changed. */
-export const SERVED: MeshFiles = {
+export const SERVER_FILES: MeshFiles = {
   fetch: (url) => fetch(url, { cache: "no-cache", credentials: "same-origin" }),
   addressOf: (url) => url,
 };

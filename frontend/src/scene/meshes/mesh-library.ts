@@ -1,9 +1,9 @@
 import type { LoadReport, MeshProgress } from "../../state/mesh-progress";
 import { strings } from "../../strings";
 import { formatBytes, MeshError } from "./mesh-error";
-import { SERVED, type MeshFiles } from "./mesh-files";
+import { SERVER_FILES, type MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
-import type { StandIns } from "./stand-ins";
+import type { LodMeshes } from "./lod-meshes";
 import { SharedTextures } from "./shared-textures";
 
 /** The maximum size of a file: browsers do not support longer strings, and no GPU draws so many triangles. */
@@ -24,9 +24,9 @@ export class MeshLibrary {
 
   constructor(
     private readonly progress: MeshProgress,
-    readonly files: MeshFiles = SERVED,
+    readonly files: MeshFiles = SERVER_FILES,
     /** Simplified versions of meshes for motion; null for none. */
-    readonly standIns: StandIns | null = null,
+    readonly lodMeshes: LodMeshes | null = null,
   ) {}
 
   /**
@@ -38,7 +38,7 @@ export class MeshLibrary {
   load(url: string, format: string): Promise<MeshTemplate> {
     let promise = this.templates.get(url);
     if (!promise) {
-      const report = this.progress.begin(fileNameOf(url));
+      const report = this.progress.startLoad(fileNameOf(url));
       promise = this.fetch(url, format.replace(/^\./, "").toLowerCase(), report);
       this.templates.set(url, promise);
       const finish = (): void => {
@@ -51,28 +51,28 @@ export class MeshLibrary {
   }
 
   private async fetch(url: string, format: string, report: LoadReport): Promise<MeshTemplate> {
-    const response = await awaitAnswer(this.files.fetch(url));
+    const response = await awaitData(this.files.fetch(url));
     if (!response.ok) throw new MeshError(await readRefusal(response));
     const version = response.headers.get("ETag") ?? response.headers.get("Last-Modified");
-    const shelf = this.cache.get(url);
-    if (shelf && version !== null && shelf.version === version) {
+    const cachedMesh = this.cache.get(url);
+    if (cachedMesh && version !== null && cachedMesh.version === version) {
       void response.body?.cancel();
-      return shelf.template;
+      return cachedMesh.template;
     }
     const data = await readBytes(response, report);
     const { readMesh } = await import("./formats");
     await report.startReading();
     const template = await readMesh(data, format, new URL(url, document.baseURI).href, this.files);
     // three.js uploads an old geometry that is still being drawn again.
-    for (const part of shelf?.template.parts ?? []) part.geometry.dispose();
+    for (const part of cachedMesh?.template.parts ?? []) part.geometry.dispose();
     this.cache.set(url, { version, template });
     return template;
   }
 }
 
 /** Waits for data from the server; a lost connection becomes a MeshError. */
-async function awaitAnswer<T>(answer: Promise<T>): Promise<T> {
-  return answer.catch(() => {
+async function awaitData<T>(data: Promise<T>): Promise<T> {
+  return data.catch(() => {
     throw new MeshError(strings.meshes.lost);
   });
 }
@@ -80,17 +80,17 @@ async function awaitAnswer<T>(answer: Promise<T>): Promise<T> {
 async function readBytes(response: Response, report: LoadReport): Promise<ArrayBuffer> {
   const { headers } = response;
   const statedLength = Number(headers.get(headers.has("Content-Encoding") ? "X-Unpacked-Length" : "Content-Length") ?? NaN);
-  const total = Number.isFinite(statedLength) ? statedLength : null;
-  if (total !== null) checkSize(total);
+  const totalBytes = Number.isFinite(statedLength) ? statedLength : null;
+  if (totalBytes !== null) checkSize(totalBytes);
   const reader = response.body?.getReader();
-  if (!reader) return awaitAnswer(response.arrayBuffer());
+  if (!reader) return awaitData(response.arrayBuffer());
   const chunks: Uint8Array[] = [];
   let bytes = 0;
-  for (let next = await awaitAnswer(reader.read()); !next.done; next = await awaitAnswer(reader.read())) {
-    chunks.push(next.value);
-    bytes += next.value.length;
+  for (let chunk = await awaitData(reader.read()); !chunk.done; chunk = await awaitData(reader.read())) {
+    chunks.push(chunk.value);
+    bytes += chunk.value.length;
     checkSize(bytes);
-    report.onBytes(bytes, total);
+    report.onBytes(bytes, totalBytes);
   }
   const content = new Uint8Array(bytes);
   let position = 0;
@@ -109,7 +109,7 @@ function checkSize(bytes: number): void {
 async function readRefusal(response: Response): Promise<string> {
   if (response.status === 404) return strings.meshes.gone;
   const isPlainText = response.headers.get("Content-Type")?.startsWith("text/plain") ?? false;
-  const [line = ""] = isPlainText ? (await awaitAnswer(response.text())).trim().split("\n") : [];
+  const [line = ""] = isPlainText ? (await awaitData(response.text())).trim().split("\n") : [];
   return line !== "" ? line : strings.meshes.answered(`${response.status} ${response.statusText}`.trim());
 }
 

@@ -9,12 +9,12 @@ import {
   type Texture,
 } from "three";
 import { strings } from "../../strings";
-import { mapsOf, type Surface } from "../materials";
+import { texturesOf, type Surface } from "../materials";
 import { MeshError } from "./mesh-error";
 import { collapseNonFinite, describeNonFinite, type NonFiniteCounts } from "./non-finite";
 
 /** A material of a mesh file. */
-export interface OwnMaterial {
+export interface FileMaterial {
   color: readonly [number, number, number];
   opacity: number;
   map: Texture | null;
@@ -26,7 +26,7 @@ export interface OwnMaterial {
 /** One geometry of a mesh, in the mesh's frame; `materials` has one entry, or one for each group of the geometry. */
 export interface MeshPart {
   geometry: BufferGeometry;
-  materials: readonly (OwnMaterial | null)[];
+  materials: readonly (FileMaterial | null)[];
   /** The names of the part and of the nodes around it in the file. */
   names?: readonly string[];
 }
@@ -42,17 +42,17 @@ export interface MeshTemplate {
 export const UNCOLORED_GRAY = 0.6;
 
 /** The parts of a loaded mesh. */
-export interface Flattened {
+export interface FlattenedMesh {
   parts: MeshPart[];
   /** The counts of non-finite vertices of each part. */
   nonFinite: NonFiniteCounts[];
 }
 
 /**
- * Flattens the scene of a loader, whose textures must be loaded. `isOwn` distinguishes the file's materials from those
- * that the loader added.
+ * Flattens the scene of a loader, whose textures must be loaded. `isFromFile` distinguishes the file's materials
+ * from those that the loader added.
  */
-export function flatten(root: Object3D, isOwn: (material: Material) => boolean): Flattened {
+export function flatten(root: Object3D, isFromFile: (material: Material) => boolean): FlattenedMesh {
   root.updateMatrixWorld(true);
   const parts: MeshPart[] = [];
   const nonFinite: NonFiniteCounts[] = [];
@@ -63,8 +63,8 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
     nonFinite.push(collapseNonFinite(geometry));
     if (!geometry.hasAttribute("normal")) geometry.computeVertexNormals();
     const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
-    const ownMaterials = materials.map((material) => (isOwn(material) ? ownMaterial(material) : null));
-    parts.push({ geometry, materials: ownMaterials, names: namesOf(object) });
+    const fileMaterials = materials.map((material) => (isFromFile(material) ? readMaterial(material) : null));
+    parts.push({ geometry, materials: fileMaterials, names: listNames(object) });
   });
   return { parts, nonFinite };
 }
@@ -74,19 +74,19 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
  *
  * @throws MeshError if nothing can be drawn.
  */
-export function createTemplate(format: string, { parts, nonFinite }: Flattened, problem: string | null): MeshTemplate {
-  if (nonFinite.every(({ ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
+export function createTemplate(format: string, { parts, nonFinite }: FlattenedMesh, problem: string | null): MeshTemplate {
+  if (nonFinite.every(({ totalTriangles }) => totalTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
   const problems = [problem, describeNonFinite(nonFinite)].filter((text) => text !== null);
   return { parts, problem: problems.join("; ") || null };
 }
 
-function namesOf(object: Object3D): string[] {
+function listNames(object: Object3D): string[] {
   const names: string[] = [];
   for (let ancestor: Object3D | null = object; ancestor; ancestor = ancestor.parent) if (ancestor.name !== "") names.push(ancestor.name);
   return names;
 }
 
-function ownMaterial(material: Material): OwnMaterial {
+function readMaterial(material: Material): FileMaterial {
   const { color, map: texture } = material as Partial<MeshPhongMaterial>;
   // Omit a texture that is missing: the surface would not be drawn at all.
   const map = texture?.image ? texture : null;
@@ -96,14 +96,14 @@ function ownMaterial(material: Material): OwnMaterial {
     opacity: material.opacity,
     map,
     vertexColors: material.vertexColors,
-    surface: material instanceof MeshStandardMaterial ? surfaceOf(material) : null,
+    surface: material instanceof MeshStandardMaterial ? readSurface(material) : null,
   };
 }
 
-function surfaceOf(material: MeshStandardMaterial): Surface {
+function readSurface(material: MeshStandardMaterial): Surface {
   const { roughness, metalness, normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap } = material;
   const { r, g, b } = material.emissive.clone().multiplyScalar(material.emissiveIntensity);
   const surface = { roughness, metalness, normalMap, roughnessMap, metalnessMap, emissive: [r, g, b], emissiveMap, aoMap } as const;
-  for (const map of mapsOf(surface)) if (map) map.colorSpace = NoColorSpace;
+  for (const map of texturesOf(surface)) if (map) map.colorSpace = NoColorSpace;
   return surface;
 }

@@ -5,7 +5,7 @@ import { strings } from "../../strings";
 import { MeshError } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
 import { flatten, createTemplate, type MeshTemplate } from "./mesh-template";
-import { TextureWait } from "./texture-wait";
+import { TextureTracker } from "./texture-tracker";
 
 /**
  * Reads Wavefront OBJ with its MTL files and their textures.
@@ -16,8 +16,8 @@ export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles):
   const text = new TextDecoder().decode(data);
   if (!/^[ \t]*v[ \t]/m.test(text)) throw new MeshError(strings.meshes.noVertices);
   const folder = LoaderUtils.extractUrlBase(url);
-  const wait = new TextureWait(files);
-  const loader = new OBJLoader(wait.manager);
+  const textureTracker = new TextureTracker(files);
+  const loader = new OBJLoader(textureTracker.manager);
   const problems: string[] = [];
   const knownMaterials = new Set<string>();
   for (const name of listMaterialFiles(text)) {
@@ -26,14 +26,14 @@ export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles):
       problems.push(strings.meshes.missingMaterials(name));
       continue;
     }
-    const materials = new MTLLoader(wait.manager).parse(await response.text(), folder);
+    const materials = new MTLLoader(textureTracker.manager).parse(await response.text(), folder);
     materials.preload();
     for (const name of Object.keys(materials.materials)) knownMaterials.add(name);
     loader.setMaterials(materials);
   }
   const root = loader.parse(text);
-  const missingUrls = await wait.settle();
-  if (missingUrls) problems.push(missingUrls);
+  const textureProblem = await textureTracker.settle();
+  if (textureProblem) problems.push(textureProblem);
   return createTemplate("OBJ", flatten(root, (material) => knownMaterials.has(material.name)), problems.join("; ") || null);
 }
 

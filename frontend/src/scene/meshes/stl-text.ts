@@ -1,5 +1,5 @@
 import { strings } from "../../strings";
-import { countText, MeshError } from "./mesh-error";
+import { formatCount, MeshError } from "./mesh-error";
 
 /** NaN and infinity as the dialects of C's printf write them: nan, -nan(ind), inf, 1.#QNAN. */
 const NON_FINITE = /^[+-]?(nan|inf|\d\.#(ind|qnan|snan|inf))/i;
@@ -43,7 +43,7 @@ class AsciiStl {
       count++;
     }
     if (word !== "endloop") throw this.errorAt(strings.meshes.stl.unexpectedWord(word.slice(0, 40), "'vertex'"));
-    if (count !== 3) throw this.errorAt(strings.meshes.stl.corners(countText(count)));
+    if (count !== 3) throw this.errorAt(strings.meshes.stl.corners(formatCount(count)));
     this.expect("endfacet");
   }
 
@@ -81,6 +81,6 @@ class AsciiStl {
 
   private errorAt(problem: string): MeshError {
     const line = this.text.slice(0, this.offset).split("\n").length;
-    return new MeshError(strings.meshes.stl.line(countText(line), problem));
+    return new MeshError(strings.meshes.stl.line(formatCount(line), problem));
   }
 }

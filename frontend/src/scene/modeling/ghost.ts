@@ -5,7 +5,7 @@ import { extrudePolygons } from "../objects/world-geometries";
 import { createEntityMatrix } from "./entity-pose";
 
 /** The size of the disc on the ground for entities without a shape of their own, m. */
-const DISC = [0.2, 0.2, 0.01] as const;
+const DISC_SIZE_M = [0.2, 0.2, 0.01] as const;
 
 /** A translucent preview of the entity that is about to be added to the world. */
 export class Ghost {
@@ -25,7 +25,7 @@ export class Ghost {
     this.root.visible = placement !== null;
     if (!placement) return;
     const { pose, size } = placement;
-    const [x = 0, y = 0, z = 0] = isShape(kind) ? size : DISC;
+    const [x = 0, y = 0, z = 0] = isShape(kind) ? size : DISC_SIZE_M;
     this.root.geometry = this.geometryOf(kind);
     const scale = kind === "sphere" ? ([x, x, x] as const) : kind === "cylinder" ? ([x, x, y] as const) : ([x, y, z] as const);
     this.root.matrix.copy(createEntityMatrix(isShape(kind) ? pose : [...pose.slice(0, 2), 0, 0, 0, 0]));

@@ -5,10 +5,10 @@ import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 
 /** The size of the handles, for a mouse and for fingers. */
-const [SIZE, LARGE] = [0.9, 1.3];
+const [MOUSE_SIZE, TOUCH_SIZE] = [0.9, 1.3];
 
 /** The length of handles on the canvas, as three.js defines it. */
-const REACH = 0.19;
+const HANDLE_LENGTH = 0.19;
 
 /** Handles that move, rotate and scale a frame; they get pointer events from the stage. */
 export class Gizmo {
@@ -18,7 +18,7 @@ export class Gizmo {
 
   constructor(private readonly stage: Stage) {
     this.controls = new TransformControls(stage.viewport.camera);
-    this.controls.size = matchMedia("(pointer: coarse)").matches ? LARGE : SIZE;
+    this.controls.size = matchMedia("(pointer: coarse)").matches ? TOUCH_SIZE : MOUSE_SIZE;
     this.helper = this.controls.getHelper();
     stage.overlays.add(this.frame, this.helper);
     this.controls.addEventListener("change", () => stage.loop.invalidate());
@@ -54,9 +54,9 @@ export class Gizmo {
   /** Returns the position of an axis's arrow or ring on the canvas, pixels; for tests. */
   positionOf(axis: Vector3): { x: number; y: number } {
     const { camera, size } = this.stage.viewport;
-    const angle = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
-    const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
-    const radius = REACH * this.frame.position.distanceTo(eye) * this.controls.size * Math.tan(angle / 2);
+    const fieldOfView = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
+    const cameraPosition = new Vector3().setFromMatrixPosition(camera.matrixWorld);
+    const radius = HANDLE_LENGTH * this.frame.position.distanceTo(cameraPosition) * this.controls.size * Math.tan(fieldOfView / 2);
     const tip = axis.clone().multiplyScalar(radius).applyQuaternion(this.frame.quaternion).add(this.frame.position).project(camera);
     return { x: ((tip.x + 1) / 2) * size.width, y: ((1 - tip.y) / 2) * size.height };
   }

@@ -3,14 +3,14 @@ import type { Modeling } from "../../state/modeling/modeling";
 import { createEntityMatrix } from "./entity-pose";
 
 /** The radius of a mark, m. */
-const RADIUS = 0.12;
-const [COLOR, SELECTED] = [0xffd54a, 0x5db0ff];
+const RADIUS_M = 0.12;
+const [COLOR, SELECTED_COLOR] = [0xffd54a, 0x5db0ff];
 
 /** Marks at the lights of the world, which would otherwise be invisible and could not be clicked. */
 export class LightMarks {
   /** The group of the marks, in the world's frame. */
   readonly root = new Group();
-  private readonly shape = new OctahedronGeometry(RADIUS);
+  private readonly shape = new OctahedronGeometry(RADIUS_M);
   private readonly marks = new Map<string, Mesh<OctahedronGeometry, MeshBasicMaterial>>();
 
   constructor(private readonly modeling: Modeling) {
@@ -31,7 +31,7 @@ export class LightMarks {
       const mark = this.marks.get(name) ?? this.createMark(name);
       mark.matrix.copy(createEntityMatrix(pose));
       mark.matrix.premultiply(displacements.get(name) ?? new Matrix4());
-      mark.material.color.setHex(selectedNames.includes(name) ? SELECTED : COLOR);
+      mark.material.color.setHex(selectedNames.includes(name) ? SELECTED_COLOR : COLOR);
     }
     this.root.matrix.copy(world);
     this.root.updateMatrixWorld(true);

@@ -1,7 +1,7 @@
 import { Matrix4, Vector3 } from "three";
 import type { WorldEntity } from "../../protocol";
 import type { Modeling } from "../../state/modeling/modeling";
-import { resizeChange, scaleSize, computeStretchFactors, type Change } from "../../state/modeling/shapes";
+import { createResizeChange, scaleSize, computeStretchFactors, type Change } from "../../state/modeling/shapes";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
 import { Gizmo } from "./gizmo";
@@ -40,12 +40,12 @@ export class Manipulation {
   onPointer(event: ToolEvent): boolean {
     const { gizmo } = this;
     if (gizmo.isHeld) {
-      if (event.type === "move") this.move(event);
+      if (event.type === "move") this.drag(event);
       else if (event.type === "up" && event.button === "left") return this.release(event);
       return true;
     }
     if (event.type === "down" && event.button === "left") return gizmo.grab(event);
-    if (event.type !== "move" || event.left || event.middle || event.right || !gizmo.hover(event)) return false;
+    if (event.type !== "move" || event.isLeftDown || event.isMiddleDown || event.isRightDown || !gizmo.hover(event)) return false;
     this.stage.viewport.canvas.style.cursor = "grab";
     return true;
   }
@@ -60,15 +60,15 @@ export class Manipulation {
     return true;
   }
 
-  private move(event: ToolEvent): void {
+  private drag(event: ToolEvent): void {
     const { modeling, gizmo } = this;
-    const steps = modeling.snapping.chooseSteps(event.ctrl);
+    const steps = modeling.snapping.chooseSteps(event.isCtrlDown);
     gizmo.drag(event, steps);
     const entities = modeling.selectedEntities;
-    const main = entities.at(-1);
-    if (!main) return;
-    if (modeling.gizmo === "scale") this.scale(main, steps.length);
-    else this.moveAll(entities, main);
+    const primary = entities.at(-1);
+    if (!primary) return;
+    if (modeling.gizmo === "scale") this.scaleEntity(primary, steps.length);
+    else this.moveSelection(entities, primary);
   }
 
   /** Ends the drag; returns false for a mere click, which is meant for the object behind the handle. */
@@ -82,25 +82,25 @@ export class Manipulation {
   }
 
   /** Moves all selected entities together with the one that has the gizmo. */
-  private moveAll(entities: readonly WorldEntity[], main: WorldEntity): void {
+  private moveSelection(entities: readonly WorldEntity[], primary: WorldEntity): void {
     const newPose = computeWorldFrame(this.stage).invert().multiply(this.gizmo.pose);
-    const motion = newPose.multiply(createEntityMatrix(main.pose).invert());
+    const motion = newPose.multiply(createEntityMatrix(primary.pose).invert());
     const changes = entities.map(({ name, pose }) => ({ name, pose: readEntityPose(motion.clone().multiply(createEntityMatrix(pose))) }));
-    this.changes = areSame(changes.flatMap(({ pose }) => pose), entities.flatMap(({ pose }) => pose)) ? [] : changes;
+    this.changes = areNearlyEqual(changes.flatMap(({ pose }) => pose), entities.flatMap(({ pose }) => pose)) ? [] : changes;
     this.displace(new Map(entities.map(({ name }) => [name, motion])));
   }
 
-  private scale(entity: WorldEntity, step: number): void {
+  private scaleEntity(entity: WorldEntity, step: number): void {
     const { name, shape, size, pose } = entity;
     if (shape === null) return;
-    const next = scaleSize(shape, size, this.gizmo.scale, step);
-    const change = resizeChange(entity, next);
-    const stretch = new Matrix4().scale(new Vector3(...computeStretchFactors(shape, size, next)));
-    this.changes = areSame(size, next) ? [] : [change];
+    const newSize = scaleSize(shape, size, this.gizmo.scale, step);
+    const change = createResizeChange(entity, newSize);
+    const stretch = new Matrix4().scale(new Vector3(...computeStretchFactors(shape, size, newSize)));
+    this.changes = areNearlyEqual(size, newSize) ? [] : [change];
     this.displace(new Map([[name, createEntityMatrix(change.pose ?? pose).multiply(stretch).multiply(createEntityMatrix(pose).invert())]]));
   }
 }
 
-function areSame(first: readonly number[], second: readonly number[]): boolean {
+function areNearlyEqual(first: readonly number[], second: readonly number[]): boolean {
   return first.every((value, i) => Math.abs(value - (second[i] ?? NaN)) < MIN_CHANGE);
 }

@@ -56,10 +56,10 @@ export class Modeler {
     if (this.manipulation.onPointer(event)) return null;
     const { placing } = modeling;
     if (this.placer.onPointer(event)) return null;
-    if (event.type !== "up" || !event.click) return event;
+    if (event.type !== "up" || !event.isClick) return event;
     if (event.button === "left" && !placing) this.onClick(event);
     else if (event.button === "right") this.openMenu(event);
-    return { ...event, click: false };
+    return { ...event, isClick: false };
   }
 
   /** Handles Esc: cancels the drag or the placing in progress, or else clears the selection. */
@@ -70,11 +70,11 @@ export class Modeler {
     else modeling.select([]);
   }
 
-  private onClick({ x, y, shift, ctrl }: ToolEvent): void {
+  private onClick({ x, y, isShiftDown, isCtrlDown }: ToolEvent): void {
     const { modeling } = this.session;
     const name = this.entityAt(x, y);
-    if (name !== null) modeling.select([name], shift || ctrl ? "toggle" : "replace");
-    else if (!shift && !ctrl) modeling.select([]);
+    if (name !== null) modeling.select([name], isShiftDown || isCtrlDown ? "toggle" : "replace");
+    else if (!isShiftDown && !isCtrlDown) modeling.select([]);
   }
 
   /** Returns the entity of the world's file under the pointer; the ground does not hide entities. */
@@ -115,8 +115,8 @@ export class Modeler {
     if (!drop) return;
     const { placing, position } = drop;
     const { canvas, size } = this.stage.viewport;
-    const box = canvas.getBoundingClientRect();
-    if (position) this.placer.drop(placing, position.x - box.left, position.y - box.top);
+    const canvasRect = canvas.getBoundingClientRect();
+    if (position) this.placer.drop(placing, position.x - canvasRect.left, position.y - canvasRect.top);
     else this.placer.drop(placing, size.width / 2, size.height / 2);
   }
 
@@ -124,7 +124,7 @@ export class Modeler {
     const { modeling, tools } = this.session;
     if (modeling.isActive !== this.wasActive) {
       this.wasActive = modeling.isActive;
-      if (modeling.isActive) tools.choose(tools.default);
+      if (modeling.isActive) tools.activate(tools.default);
       else this.displace(new Map());
     }
     this.displacements = new Map();

@@ -1,5 +1,5 @@
 import { Matrix4, Plane, Vector3 } from "three";
-import type { Place } from "../../state/modeling/shapes";
+import type { GroundPosition } from "../../state/modeling/shapes";
 import type { Stage } from "../stage";
 
 const GROUND = new Plane(new Vector3(0, 0, 1), 0);
@@ -10,7 +10,7 @@ export function computeWorldFrame(stage: Stage): Matrix4 {
 }
 
 /** Returns the point of the world's ground, z = 0, at a canvas position in pixels. */
-export function groundAt(stage: Stage, x: number, y: number): Place | null {
+export function groundPositionAt(stage: Stage, x: number, y: number): GroundPosition | null {
   const ray = stage.picker.rayAt(x, y).ray.clone().applyMatrix4(computeWorldFrame(stage).invert());
   const point = ray.intersectPlane(GROUND, new Vector3());
   return point && [point.x, point.y];

@@ -19,7 +19,7 @@ export interface ArrowLook {
   gray?: number;
 }
 
-const ALONG_X = new Vector3(1, 0, 0);
+const X_AXIS = new Vector3(1, 0, 0);
 const ONE = new Vector3(1, 1, 1);
 
 /** Any number of arrows in two draw calls, along the x axis of their poses, as in RViz. */
@@ -27,9 +27,9 @@ export class ArrowBatch {
   private readonly shafts: CopyBatch;
   private readonly heads: CopyBatch;
   /** The indices of the arrows that have a shaft. */
-  private withShaft: number[] = [];
+  private arrowsWithShaft: number[] = [];
   private readonly matrix = new Matrix4();
-  private readonly step = new Matrix4();
+  private readonly partMatrix = new Matrix4();
 
   constructor(parent: Object3D, segments = 20) {
     this.shafts = new CopyBatch(parent, createRod(segments, "origin"));
@@ -43,7 +43,7 @@ export class ArrowBatch {
 
   /** Removes all arrows; at most `capacity` will be added. */
   begin(capacity: number): void {
-    this.withShaft = [];
+    this.arrowsWithShaft = [];
     this.shafts.begin(capacity);
     this.heads.begin(capacity);
   }
@@ -53,12 +53,12 @@ export class ArrowBatch {
     const { shaftLength, shaftDiameter, headLength, headDiameter } = shape;
     const { color, headColor = color, alpha = 1, gray = 0 } = look;
     if (shaftLength > 0) {
-      this.withShaft.push(this.size);
-      this.step.makeScale(shaftLength, shaftDiameter, shaftDiameter);
-      this.shafts.add(this.matrix.multiplyMatrices(pose, this.step), gray, alpha, color);
+      this.arrowsWithShaft.push(this.size);
+      this.partMatrix.makeScale(shaftLength, shaftDiameter, shaftDiameter);
+      this.shafts.add(this.matrix.multiplyMatrices(pose, this.partMatrix), gray, alpha, color);
     }
-    this.step.makeScale(headLength, headDiameter, headDiameter).setPosition(shaftLength, 0, 0);
-    this.heads.add(this.matrix.multiplyMatrices(pose, this.step), gray, alpha, headColor);
+    this.partMatrix.makeScale(headLength, headDiameter, headDiameter).setPosition(shaftLength, 0, 0);
+    this.heads.add(this.matrix.multiplyMatrices(pose, this.partMatrix), gray, alpha, headColor);
   }
 
   end(): void {
@@ -75,7 +75,7 @@ export class ArrowBatch {
   pick(ray: Raycaster): CopyHit | null {
     const [shaft, head] = [this.shafts.pick(ray), this.heads.pick(ray)];
     if (!shaft || (head && head.distance <= shaft.distance)) return head;
-    return { ...shaft, copy: this.withShaft[shaft.copy] ?? 0 };
+    return { ...shaft, copy: this.arrowsWithShaft[shaft.copy] ?? 0 };
   }
 
   dispose(): void {
@@ -85,10 +85,10 @@ export class ArrowBatch {
 }
 
 const rotation = new Quaternion();
-const unit = new Vector3();
+const unitDirection = new Vector3();
 
 /** Computes a pose at `origin` whose x axis points along `direction`, which may have any length. */
 export function poseAlongX(origin: Vector3, direction: Vector3, pose: Matrix4): Matrix4 {
-  rotation.setFromUnitVectors(ALONG_X, unit.copy(direction).normalize());
+  rotation.setFromUnitVectors(X_AXIS, unitDirection.copy(direction).normalize());
   return pose.compose(origin, rotation, ONE);
 }

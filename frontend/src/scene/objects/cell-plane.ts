@@ -11,19 +11,19 @@ import {
   RedFormat,
   ShaderMaterial,
 } from "three";
-import { OPAQUE_FROM } from "../materials";
+import { MIN_OPAQUE_ALPHA } from "../materials";
 
 /** Cells along each side of a part; every graphics library supports textures of this size. */
 const CELLS_PER_PART = 4096;
 
-const VERTEX = /* glsl */ `
+const VERTEX_SHADER = /* glsl */ `
   varying vec2 vUv;
   void main() {
     vUv = uv;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   }
 `;
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   uniform sampler2D cells;
   uniform sampler2D palette;
   uniform float alpha;
@@ -42,7 +42,7 @@ export interface CellLook {
   palette: Uint8Array;
   alpha: number;
   /** Whether some colors of the palette are transparent. */
-  isSeeThrough: boolean;
+  isTranslucent: boolean;
   /** Whether the plane is drawn before everything else, which then covers it regardless of depth. */
   isBehind: boolean;
   /** The render order: among coplanar planes, the one with the higher order covers the others. */
@@ -55,26 +55,26 @@ export class CellPlane {
   private parts: Mesh<PlaneGeometry, ShaderMaterial>[] = [];
   private readonly palette = { value: createTexture(new Uint8Array(256 * 4), 256, 1) };
   private look: CellLook | null = null;
-  private size = "";
+  private sizeKey = "";
 
   /** Sets the cells, row by row; `resolution` is the side of a cell, m. */
   setCells(cells: Uint8Array, width: number, height: number, resolution: number): void {
-    const size = [width, height, resolution].join();
-    if (size !== this.size) {
+    const sizeKey = [width, height, resolution].join();
+    if (sizeKey !== this.sizeKey) {
       this.clear();
-      this.size = size;
+      this.sizeKey = sizeKey;
       for (let y = 0; y < height; y += CELLS_PER_PART) {
         for (let x = 0; x < width; x += CELLS_PER_PART) {
-          this.add(x, y, Math.min(CELLS_PER_PART, width - x), Math.min(CELLS_PER_PART, height - y), resolution);
+          this.addPart(x, y, Math.min(CELLS_PER_PART, width - x), Math.min(CELLS_PER_PART, height - y), resolution);
         }
       }
       if (this.look) this.setLook(this.look);
     }
     for (const part of this.parts) {
       const { x, y } = part.userData as { x: number; y: number };
-      const map = part.material.uniforms["cells"]?.value as DataTexture;
-      copy(cells, width, x, y, map);
-      map.needsUpdate = true;
+      const texture = part.material.uniforms["cells"]?.value as DataTexture;
+      copyCells(cells, width, x, y, texture);
+      texture.needsUpdate = true;
     }
   }
 
@@ -82,12 +82,12 @@ export class CellPlane {
     this.look = look;
     this.palette.value.image.data?.set(look.palette);
     this.palette.value.needsUpdate = true;
-    const isSeeThrough = look.alpha < OPAQUE_FROM || look.isSeeThrough;
+    const isTranslucent = look.alpha < MIN_OPAQUE_ALPHA || look.isTranslucent;
     for (const { material } of this.parts) {
       // A plane drawn behind must precede transparent objects, too: it is blended, but does not count as transparent.
-      material.transparent = isSeeThrough && !look.isBehind;
+      material.transparent = isTranslucent && !look.isBehind;
       material.blending = CustomBlending;
-      material.depthWrite = !isSeeThrough && !look.isBehind;
+      material.depthWrite = !isTranslucent && !look.isBehind;
       material.depthTest = !look.isBehind;
       const alpha = material.uniforms["alpha"];
       if (alpha) alpha.value = look.alpha;
@@ -104,7 +104,7 @@ export class CellPlane {
       part.material.dispose();
     }
     this.parts = [];
-    this.size = "";
+    this.sizeKey = "";
   }
 
   dispose(): void {
@@ -113,12 +113,12 @@ export class CellPlane {
     this.root.removeFromParent();
   }
 
-  private add(x: number, y: number, width: number, height: number, resolution: number): void {
-    const [w, h] = [width * resolution, height * resolution];
-    const geometry = new PlaneGeometry(w, h).translate(x * resolution + w / 2, y * resolution + h / 2, 0);
+  private addPart(x: number, y: number, width: number, height: number, resolution: number): void {
+    const [planeWidth, planeHeight] = [width * resolution, height * resolution];
+    const geometry = new PlaneGeometry(planeWidth, planeHeight).translate(x * resolution + planeWidth / 2, y * resolution + planeHeight / 2, 0);
     const material = new ShaderMaterial({
-      vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
+      vertexShader: VERTEX_SHADER,
+      fragmentShader: FRAGMENT_SHADER,
       uniforms: {
         cells: { value: createTexture(new Uint8Array(width * height), width, height) },
         palette: this.palette,
@@ -145,8 +145,8 @@ function createTexture(data: Uint8Array, width: number, height: number): DataTex
 }
 
 /** Copies the cells of a part from the row-by-row cells of the whole. */
-function copy(cells: Uint8Array, width: number, left: number, bottom: number, map: DataTexture): void {
-  const { data, width: columns, height: rows } = map.image;
+function copyCells(cells: Uint8Array, width: number, left: number, bottom: number, texture: DataTexture): void {
+  const { data, width: columns, height: rows } = texture.image;
   const target = data as Uint8Array;
   if (columns === width && bottom === 0) {
     target.set(cells.subarray(0, columns * rows));

@@ -19,7 +19,7 @@ import { createSlotMaterial, createSlotTexture, TEXELS_PER_SLOT, writeSlot } fro
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
 const WHITE = 0xffffff;
 /** Batches with more copies are drawn completely, in the order in which the copies were added. */
-const MAX_SORTED = 1000;
+const MAX_SORTED_COPIES = 1000;
 /** Overlays are drawn after everything but labels. */
 const OVERLAY_ORDER = 5;
 
@@ -43,8 +43,8 @@ export interface CopyHit {
 /**
  * Many copies of one shape in one draw call, each with its own matrix, color, gray and alpha.
  *
- * Call `begin(capacity)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have an
- * index, normals and colors (`paint` of geometries.ts), which are multiplied by each copy's color.
+ * Call `begin(capacity)`, then `add` for each copy, then `end`; this replaces the earlier copies. The shape must have
+ * an index, normals and colors (`paint` of geometries.ts), which are multiplied by each copy's color.
  *
  * The vertices of all copies are in one buffer, and each finds its matrix in a texture. GPU instancing would be
  * simpler, but software renderers take some 50 microseconds for each instance: 500 frames would be drawn at 6 frames a
@@ -56,11 +56,11 @@ export class CopyBatch {
   private readonly slots: { value: DataTexture };
   private capacity = 0;
   private count = 0;
-  private isSeeThrough = false;
+  private isTranslucent = false;
   /** The contents of the slots of all copies. */
   private allSlots = new Float32Array(0);
   /** The copies in the slots; null for all in their order. */
-  private inSlots: readonly number[] | null = null;
+  private slotOrder: readonly number[] | null = null;
   private isUploaded = false;
 
   constructor(
@@ -93,8 +93,8 @@ export class CopyBatch {
   /** Removes all copies; at most `capacity` will be added. */
   begin(capacity: number): void {
     this.count = 0;
-    this.isSeeThrough = false;
-    this.inSlots = null;
+    this.isTranslucent = false;
+    this.slotOrder = null;
     if (capacity <= this.capacity) return;
     this.capacity = Math.ceil(capacity * 1.25);
     this.mesh.geometry.dispose();
@@ -110,7 +110,7 @@ export class CopyBatch {
    */
   add(matrix: Matrix4, gray = 0, alpha = 1, color = WHITE): void {
     writeSlot(this.allSlots, this.count, matrix, color, gray, alpha);
-    this.isSeeThrough ||= alpha < 1;
+    this.isTranslucent ||= alpha < 1;
     this.count += 1;
   }
 
@@ -120,9 +120,9 @@ export class CopyBatch {
     this.mesh.boundingBox = null;
     geometry.setDrawRange(0, this.count * (this.shape.index?.count ?? 0));
     this.isUploaded = false;
-    if (this.options.isOverlay || material.transparent === this.isSeeThrough) return;
-    material.transparent = this.isSeeThrough;
-    material.depthWrite = !this.isSeeThrough;
+    if (this.options.isOverlay || material.transparent === this.isTranslucent) return;
+    material.transparent = this.isTranslucent;
+    material.depthWrite = !this.isTranslucent;
     material.needsUpdate = true;
   }
 
@@ -158,18 +158,18 @@ export class CopyBatch {
 
   /** Fills the slots with the copies in view; transparent ones are sorted from the farthest to the nearest. */
   private arrange(camera: Camera): void {
-    const order = this.count > MAX_SORTED ? null : this.sortVisibleCopies(camera);
-    if (this.isUploaded && areSame(order, this.inSlots)) return;
+    const drawingOrder = this.count > MAX_SORTED_COPIES ? null : this.sortVisibleCopies(camera);
+    if (this.isUploaded && areEqual(drawingOrder, this.slotOrder)) return;
     const { texels, allSlots } = this;
-    if (order === null) texels.set(allSlots.subarray(0, this.count * FLOATS_PER_SLOT));
+    if (drawingOrder === null) texels.set(allSlots.subarray(0, this.count * FLOATS_PER_SLOT));
     else {
-      order.forEach((copy, slot) => {
+      drawingOrder.forEach((copy, slot) => {
         texels.set(allSlots.subarray(copy * FLOATS_PER_SLOT, (copy + 1) * FLOATS_PER_SLOT), slot * FLOATS_PER_SLOT);
       });
     }
-    this.mesh.geometry.setDrawRange(0, (order?.length ?? this.count) * (this.shape.index?.count ?? 0));
+    this.mesh.geometry.setDrawRange(0, (drawingOrder?.length ?? this.count) * (this.shape.index?.count ?? 0));
     this.slots.value.needsUpdate = true;
-    this.inSlots = order;
+    this.slotOrder = drawingOrder;
     this.isUploaded = true;
   }
 
@@ -179,13 +179,13 @@ export class CopyBatch {
     const shapeSphere = this.shape.boundingSphere ?? new Sphere();
     const view = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, this.mesh.matrixWorld);
     const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);
-    const copies: { copy: number; height: number }[] = [];
+    const copies: { copy: number; viewZ: number }[] = [];
     const [matrix, sphere] = [new Matrix4(), new Sphere()];
     for (let copy = 0; copy < this.count; copy++) {
       sphere.copy(shapeSphere).applyMatrix4(this.matrixOf(copy, matrix).premultiply(view));
-      if (frustum.intersectsSphere(sphere)) copies.push({ copy, height: sphere.center.z });
+      if (frustum.intersectsSphere(sphere)) copies.push({ copy, viewZ: sphere.center.z });
     }
-    if (this.isSeeThrough && !this.options.isOverlay) copies.sort((a, b) => a.height - b.height);
+    if (this.isTranslucent && !this.options.isOverlay) copies.sort((a, b) => a.viewZ - b.viewZ);
     return copies.map(({ copy }) => copy);
   }
 
@@ -201,7 +201,7 @@ export class CopyBatch {
   }
 }
 
-function areSame(first: readonly number[] | null, second: readonly number[] | null): boolean {
+function areEqual(first: readonly number[] | null, second: readonly number[] | null): boolean {
   if (first === null || second === null) return first === second;
   return first.length === second.length && first.every((number, i) => number === second[i]);
 }
@@ -226,22 +226,22 @@ class CopyMesh extends Mesh<BufferGeometry, ShaderMaterial> {
 
 /** Repeats the shape `count` times; each vertex has the index of its copy. */
 function createCopies(shape: BufferGeometry, count: number): BufferGeometry {
-  const result = new BufferGeometry();
-  const vertices = shape.getAttribute("position").count;
+  const geometry = new BufferGeometry();
+  const vertexCount = shape.getAttribute("position").count;
   for (const name of ["position", "normal", "color"]) {
     if (!shape.hasAttribute(name)) continue;
     const { array, itemSize } = shape.getAttribute(name);
     const repeatedArray = new Float32Array(array.length * count);
     for (let copy = 0; copy < count; copy++) repeatedArray.set(array, copy * array.length);
-    result.setAttribute(name, new BufferAttribute(repeatedArray, itemSize));
+    geometry.setAttribute(name, new BufferAttribute(repeatedArray, itemSize));
   }
-  const slots = new Float32Array(vertices * count);
-  for (let copy = 0; copy < count; copy++) slots.fill(copy, copy * vertices, (copy + 1) * vertices);
-  result.setAttribute("slot", new BufferAttribute(slots, 1));
+  const slots = new Float32Array(vertexCount * count);
+  for (let copy = 0; copy < count; copy++) slots.fill(copy, copy * vertexCount, (copy + 1) * vertexCount);
+  geometry.setAttribute("slot", new BufferAttribute(slots, 1));
   const index = shape.index?.array ?? [];
   const indices = new Uint32Array(index.length * count);
   for (let i = 0; i < indices.length; i++) {
-    indices[i] = (index[i % index.length] ?? 0) + Math.floor(i / index.length) * vertices;
+    indices[i] = (index[i % index.length] ?? 0) + Math.floor(i / index.length) * vertexCount;
   }
-  return result.setIndex(new BufferAttribute(indices, 1));
+  return geometry.setIndex(new BufferAttribute(indices, 1));
 }

@@ -18,9 +18,9 @@ export interface CovarianceStyle {
 }
 
 /** The thickness of flat shapes, m. */
-const FLAT = 0.001;
+const FLAT_THICKNESS_M = 0.001;
 /** Larger angles are clamped to this, because they look alike. */
-const MAX_RADIANS = (89 * Math.PI) / 180;
+const MAX_ANGLE_RAD = (89 * Math.PI) / 180;
 const SEGMENT_COUNT = 24;
 
 /**
@@ -29,7 +29,7 @@ const SEGMENT_COUNT = 24;
  * that shows its possible rotation. All of it is drawn as by RViz's CovarianceVisual.
  */
 export class CovarianceBatch {
-  private readonly balls: CopyBatch;
+  private readonly spheres: CopyBatch;
   private readonly discs: CopyBatch;
   private readonly cones: CopyBatch;
   private readonly matrix = new Matrix4();
@@ -37,14 +37,14 @@ export class CovarianceBatch {
   private readonly root = new Matrix4();
 
   constructor(parent: Object3D) {
-    this.balls = new CopyBatch(parent, createSphere(SEGMENT_COUNT));
+    this.spheres = new CopyBatch(parent, createSphere(SEGMENT_COUNT));
     this.discs = new CopyBatch(parent, createCylinder(SEGMENT_COUNT));
     this.cones = new CopyBatch(parent, createCone(SEGMENT_COUNT));
   }
 
   /** Removes all covariances; at most `capacity` poses will be added. */
   begin(capacity: number): void {
-    this.balls.begin(capacity);
+    this.spheres.begin(capacity);
     this.discs.begin(capacity * 3);
     this.cones.begin(capacity);
   }
@@ -64,12 +64,16 @@ export class CovarianceBatch {
       const { color, alpha, scale } = style.position;
       this.root.makeTranslation(position).premultiply(frame);
       const shape = isInPlane
-        ? deviationsOf([covarianceAt(0, 0), covarianceAt(0, 1), 0, covarianceAt(1, 0), covarianceAt(1, 1), 0, 0, 0, 0])
-        : deviationsOf([covarianceAt(0, 0), covarianceAt(0, 1), covarianceAt(0, 2), covarianceAt(1, 0), covarianceAt(1, 1), covarianceAt(1, 2), covarianceAt(2, 0), covarianceAt(2, 1), covarianceAt(2, 2)]);
+        ? computeDeviations([covarianceAt(0, 0), covarianceAt(0, 1), 0, covarianceAt(1, 0), covarianceAt(1, 1), 0, 0, 0, 0])
+        : computeDeviations([
+            covarianceAt(0, 0), covarianceAt(0, 1), covarianceAt(0, 2),
+            covarianceAt(1, 0), covarianceAt(1, 1), covarianceAt(1, 2),
+            covarianceAt(2, 0), covarianceAt(2, 1), covarianceAt(2, 2),
+          ]);
       if (shape) {
         const [x, y, z] = shape.deviations.map((deviation) => 2 * deviation * scale) as [number, number, number];
         const size = this.scale.makeScale(clampToFlat(x), clampToFlat(y), clampToFlat(z));
-        this.balls.add(this.matrix.copy(this.root).multiply(shape.axes).multiply(size), 0, alpha, color);
+        this.spheres.add(this.matrix.copy(this.root).multiply(shape.axes).multiply(size), 0, alpha, color);
       }
     }
     if (!style.orientation) return;
@@ -83,25 +87,25 @@ export class CovarianceBatch {
   }
 
   end(): void {
-    for (const batch of [this.balls, this.discs, this.cones]) batch.end();
+    for (const batch of [this.spheres, this.discs, this.cones]) batch.end();
   }
 
   expandBox(box: Box3): void {
-    for (const batch of [this.balls, this.discs, this.cones]) batch.expandBox(box);
+    for (const batch of [this.spheres, this.discs, this.cones]) batch.expandBox(box);
   }
 
   dispose(): void {
-    for (const batch of [this.balls, this.discs, this.cones]) batch.dispose();
+    for (const batch of [this.spheres, this.discs, this.cones]) batch.dispose();
   }
 
   /** Adds a triangle with its tip at the pose and its base at `offset` along x. */
   private addTriangle(variance: number, style: NonNullable<CovarianceStyle["orientation"]>): void {
     const { offset, scale, alpha, colors } = style;
     if (!(variance >= 0) || offset <= 0) return;
-    const width = offset * widthOfAngle(2 * Math.sqrt(variance) * scale);
+    const width = offset * computeAngleWidth(2 * Math.sqrt(variance) * scale);
     // The batch's cone has its base at the origin and its tip along x: turn it around.
     this.matrix.makeTranslation(offset, 0, 0).premultiply(this.root);
-    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -clampToFlat(width), FLAT)), 0, alpha, colors[2]);
+    this.cones.add(this.matrix.multiply(this.scale.makeScale(-offset, -clampToFlat(width), FLAT_THICKNESS_M)), 0, alpha, colors[2]);
   }
 
   private addDiscs(
@@ -111,11 +115,11 @@ export class CovarianceBatch {
     const { offset, scale, alpha, colors } = style;
     for (const axis of [0, 1, 2]) {
       const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-      const shape = deviationsOf([covarianceAt(3 + u, 3 + u), covarianceAt(3 + u, 3 + v), 0, covarianceAt(3 + v, 3 + u), covarianceAt(3 + v, 3 + v), 0, 0, 0, 0]);
+      const shape = computeDeviations([covarianceAt(3 + u, 3 + u), covarianceAt(3 + u, 3 + v), 0, covarianceAt(3 + v, 3 + u), covarianceAt(3 + v, 3 + v), 0, 0, 0, 0]);
       if (!shape || offset <= 0) continue;
-      const [x, y] = shape.deviations.map((deviation) => clampToFlat(offset * widthOfAngle(2 * deviation * scale)));
-      this.matrix.copy(this.root).multiply(DISCS[axis] ?? DISCS[2]).multiply(this.scale.makeTranslation(0, 0, offset));
-      this.matrix.multiply(shape.axes).multiply(this.scale.makeScale(x ?? FLAT, y ?? FLAT, FLAT));
+      const [x, y] = shape.deviations.map((deviation) => clampToFlat(offset * computeAngleWidth(2 * deviation * scale)));
+      this.matrix.copy(this.root).multiply(DISC_ORIENTATIONS[axis] ?? DISC_ORIENTATIONS[2]).multiply(this.scale.makeTranslation(0, 0, offset));
+      this.matrix.multiply(shape.axes).multiply(this.scale.makeScale(x ?? FLAT_THICKNESS_M, y ?? FLAT_THICKNESS_M, FLAT_THICKNESS_M));
       this.discs.add(this.matrix, 0, alpha, colors[axis] ?? colors[2]);
     }
   }
@@ -125,7 +129,7 @@ export class CovarianceBatch {
  * For each axis: z is that axis, and x and y are the directions in which rotations about the two following axes move
  * it. For the z axis, RViz swaps these two.
  */
-const DISCS = [
+const DISC_ORIENTATIONS = [
   new Matrix4().makeBasis(new Vector3(0, 0, 1), new Vector3(0, -1, 0), new Vector3(1, 0, 0)),
   new Matrix4().makeBasis(new Vector3(1, 0, 0), new Vector3(0, 0, -1), new Vector3(0, 1, 0)),
   new Matrix4().makeBasis(new Vector3(0, -1, 0), new Vector3(1, 0, 0), new Vector3(0, 0, 1)),
@@ -136,7 +140,7 @@ type Matrix3Rows = Parameters<typeof computePrincipalAxes>[0];
 /**
  * Returns standard deviations and their axes; null for rows that are not a covariance, which RViz does not draw either.
  */
-function deviationsOf(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
+function computeDeviations(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | null {
   const { values, axes } = computePrincipalAxes(rows);
   const maximum = Math.max(...values.map(Math.abs));
   if (!Number.isFinite(maximum) || values.some((value) => value < -1e-6 * maximum)) return null;
@@ -144,10 +148,10 @@ function deviationsOf(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 
 }
 
 /** Returns the width of an angle at a distance of one meter. */
-function widthOfAngle(radians: number): number {
-  return 2 * Math.tan(Math.min(radians / 2, MAX_RADIANS));
+function computeAngleWidth(radians: number): number {
+  return 2 * Math.tan(Math.min(radians / 2, MAX_ANGLE_RAD));
 }
 
 function clampToFlat(size: number): number {
-  return Math.max(size, FLAT);
+  return Math.max(size, FLAT_THICKNESS_M);
 }

@@ -32,10 +32,10 @@ export function computePrincipalAxes(m: readonly [number, number, number, number
   ];
   const elementAt = (matrix: number[][], row: number, column: number): number => matrix[row]?.[column] ?? 0;
   const rotate = (matrix: number[][], row: number, p: number, q: number, c: number, s: number): void => {
-    const line = matrix[row] ?? [];
-    const [x = 0, y = 0] = [line[p], line[q]];
-    line[p] = c * x - s * y;
-    line[q] = s * x + c * y;
+    const elements = matrix[row] ?? [];
+    const [x = 0, y = 0] = [elements[p], elements[q]];
+    elements[p] = c * x - s * y;
+    elements[q] = s * x + c * y;
   };
   for (let sweep = 0; sweep < SWEEP_COUNT; sweep++) {
     for (const [p, q] of PLANES) {
@@ -48,11 +48,11 @@ export function computePrincipalAxes(m: readonly [number, number, number, number
         rotate(a, row, p, q, c, s);
         rotate(v, row, p, q, c, s);
       }
-      const [high = [], low = []] = [a[p], a[q]];
+      const [rowP = [], rowQ = []] = [a[p], a[q]];
       for (let column = 0; column < 3; column++) {
-        const [x = 0, y = 0] = [high[column], low[column]];
-        high[column] = c * x - s * y;
-        low[column] = s * x + c * y;
+        const [x = 0, y = 0] = [rowP[column], rowQ[column]];
+        rowP[column] = c * x - s * y;
+        rowQ[column] = s * x + c * y;
       }
     }
   }

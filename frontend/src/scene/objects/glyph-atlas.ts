@@ -1,6 +1,6 @@
 import { CanvasTexture, LinearFilter, LinearMipmapLinearFilter } from "three";
 
-const SIZE = 1024;
+const ATLAS_SIZE_PX = 1024;
 const FONT_PX = 44;
 const MARGIN_PX = 6;
 const CELL_HEIGHT_PX = 60;
@@ -19,12 +19,12 @@ export class GlyphAtlas {
   readonly texture: CanvasTexture;
   private readonly context: CanvasRenderingContext2D;
   private readonly glyphs = new Map<string, Glyph>();
-  private x = 0;
-  private y = 0;
+  private nextX = 0;
+  private nextY = 0;
 
   constructor() {
     const canvas = document.createElement("canvas");
-    canvas.width = canvas.height = SIZE;
+    canvas.width = canvas.height = ATLAS_SIZE_PX;
     const context = canvas.getContext("2d");
     if (!context) throw new Error("This browser does not support the 2D canvas");
     this.context = context;
@@ -50,21 +50,21 @@ export class GlyphAtlas {
     context.font = FONT;
     const advance = context.measureText(character).width;
     const width = Math.ceil(advance) + 2 * MARGIN_PX;
-    if (this.x + width > SIZE) {
-      this.x = 0;
-      this.y += CELL_HEIGHT_PX;
+    if (this.nextX + width > ATLAS_SIZE_PX) {
+      this.nextX = 0;
+      this.nextY += CELL_HEIGHT_PX;
     }
-    if (this.y + CELL_HEIGHT_PX > SIZE) return { uv: [0, 0, 0, 0], width: 0, advance: advance / CELL_HEIGHT_PX };
+    if (this.nextY + CELL_HEIGHT_PX > ATLAS_SIZE_PX) return { uv: [0, 0, 0, 0], width: 0, advance: advance / CELL_HEIGHT_PX };
     context.textBaseline = "alphabetic";
     context.lineJoin = "round";
     context.lineWidth = 5;
     context.strokeStyle = "rgba(12, 14, 18, 0.75)";
     context.fillStyle = "white";
-    const baseline = this.y + CELL_HEIGHT_PX - 16;
-    context.strokeText(character, this.x + MARGIN_PX, baseline);
-    context.fillText(character, this.x + MARGIN_PX, baseline);
-    const uv = [this.x / SIZE, 1 - (this.y + CELL_HEIGHT_PX) / SIZE, width / SIZE, CELL_HEIGHT_PX / SIZE] as const;
-    this.x += width;
+    const baseline = this.nextY + CELL_HEIGHT_PX - 16;
+    context.strokeText(character, this.nextX + MARGIN_PX, baseline);
+    context.fillText(character, this.nextX + MARGIN_PX, baseline);
+    const uv = [this.nextX / ATLAS_SIZE_PX, 1 - (this.nextY + CELL_HEIGHT_PX) / ATLAS_SIZE_PX, width / ATLAS_SIZE_PX, CELL_HEIGHT_PX / ATLAS_SIZE_PX] as const;
+    this.nextX += width;
     return { uv, width: width / CELL_HEIGHT_PX, advance: advance / CELL_HEIGHT_PX };
   }
 }

@@ -10,7 +10,7 @@ import {
 } from "three";
 import { GlyphAtlas } from "./glyph-atlas";
 
-const VERTEX = /* glsl */ `
+const VERTEX_SHADER = /* glsl */ `
   attribute vec2 corner;
   attribute vec2 fade;
   varying vec2 vUv;
@@ -18,23 +18,23 @@ const VERTEX = /* glsl */ `
   void main() {
     vUv = uv;
     vFade = fade;
-    vec4 at = modelViewMatrix * vec4(position, 1.0);
-    at.xy += corner;
-    gl_Position = projectionMatrix * at;
+    vec4 viewPosition = modelViewMatrix * vec4(position, 1.0);
+    viewPosition.xy += corner;
+    gl_Position = projectionMatrix * viewPosition;
   }
 `;
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   uniform sampler2D map;
   varying vec2 vUv;
   varying vec2 vFade;
   void main() {
-    vec4 ink = texture2D(map, vUv);
-    gl_FragColor = vec4(ink.rgb * mix(1.0, 0.7, vFade.x), ink.a) * vFade.y;
+    vec4 glyphColor = texture2D(map, vUv);
+    gl_FragColor = vec4(glyphColor.rgb * mix(1.0, 0.7, vFade.x), glyphColor.a) * vFade.y;
   }
 `;
 /** Floats per vertex: anchor 3, corner 2, uv 2, fade 2. */
-const STRIDE = 9;
-const FLOATS_PER_GLYPH = STRIDE * 4;
+const FLOATS_PER_VERTEX = 9;
+const FLOATS_PER_GLYPH = FLOATS_PER_VERTEX * 4;
 /** The corners of a glyph, in units of its width and height. */
 const CORNERS = [
   [0, 0],
@@ -52,14 +52,14 @@ export class LabelBatch {
    * 1.
    */
   private readonly layouts = new Map<string, Float32Array>();
-  private data = new Float32Array(0);
+  private vertexData = new Float32Array(0);
   private buffer: InterleavedBuffer | null = null;
   private glyphs = 0;
 
   constructor() {
     const material = new ShaderMaterial({
-      vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
+      vertexShader: VERTEX_SHADER,
+      fragmentShader: FRAGMENT_SHADER,
       uniforms: { map: { value: this.atlas.texture } },
       transparent: true,
       premultipliedAlpha: true,
@@ -73,29 +73,29 @@ export class LabelBatch {
   }
 
   /** Removes all texts; texts with this many characters in total will be added. */
-  begin(characters: number): void {
+  begin(characterCount: number): void {
     this.glyphs = 0;
-    if (this.data.length < characters * FLOATS_PER_GLYPH) this.allocate(Math.max(64, Math.ceil(characters * 1.5)));
+    if (this.vertexData.length < characterCount * FLOATS_PER_GLYPH) this.allocate(Math.max(64, Math.ceil(characterCount * 1.5)));
   }
 
   /** Adds a text centered below `anchor`; `height` is the height of a line, m. */
   add(text: string, anchor: Vector3, height: number, gray: number, alpha: number): void {
-    const { data } = this;
+    const { vertexData } = this;
     const layout = this.layout(text);
     let offset = this.glyphs * FLOATS_PER_GLYPH;
     for (let i = 0; i < layout.length; i += 6) {
       const [x = 0, width = 0, u = 0, v = 0, uWidth = 0, vHeight = 0] = layout.subarray(i, i + 6);
       for (const [right, top] of CORNERS) {
-        data[offset] = anchor.x;
-        data[offset + 1] = anchor.y;
-        data[offset + 2] = anchor.z;
-        data[offset + 3] = (x + right * width) * height;
-        data[offset + 4] = (top - 1) * height;
-        data[offset + 5] = u + right * uWidth;
-        data[offset + 6] = v + top * vHeight;
-        data[offset + 7] = gray;
-        data[offset + 8] = alpha;
-        offset += STRIDE;
+        vertexData[offset] = anchor.x;
+        vertexData[offset + 1] = anchor.y;
+        vertexData[offset + 2] = anchor.z;
+        vertexData[offset + 3] = (x + right * width) * height;
+        vertexData[offset + 4] = (top - 1) * height;
+        vertexData[offset + 5] = u + right * uWidth;
+        vertexData[offset + 6] = v + top * vHeight;
+        vertexData[offset + 7] = gray;
+        vertexData[offset + 8] = alpha;
+        offset += FLOATS_PER_VERTEX;
       }
       this.glyphs += 1;
     }
@@ -134,11 +134,11 @@ export class LabelBatch {
     return layout;
   }
 
-  private allocate(glyphs: number): void {
-    this.data = new Float32Array(glyphs * FLOATS_PER_GLYPH);
-    const buffer = new InterleavedBuffer(this.data, STRIDE).setUsage(DynamicDrawUsage);
-    const indices = new Uint32Array(glyphs * 6);
-    for (let i = 0; i < glyphs; i++) indices.set([0, 1, 2, 0, 2, 3].map((corner) => i * 4 + corner), i * 6);
+  private allocate(glyphCount: number): void {
+    this.vertexData = new Float32Array(glyphCount * FLOATS_PER_GLYPH);
+    const buffer = new InterleavedBuffer(this.vertexData, FLOATS_PER_VERTEX).setUsage(DynamicDrawUsage);
+    const indices = new Uint32Array(glyphCount * 6);
+    for (let i = 0; i < glyphCount; i++) indices.set([0, 1, 2, 0, 2, 3].map((corner) => i * 4 + corner), i * 6);
     const geometry = new BufferGeometry().setIndex(new BufferAttribute(indices, 1));
     geometry.setAttribute("position", new InterleavedBufferAttribute(buffer, 3, 0));
     geometry.setAttribute("corner", new InterleavedBufferAttribute(buffer, 2, 3));

@@ -1,5 +1,5 @@
 /** The point nearest to the start of a ray. */
-export interface NearPoint {
+export interface NearestPoint {
   index: number;
   /** The distance along the ray, m. */
   distance: number;
@@ -15,21 +15,21 @@ export function findNearestPoint(
   direction: readonly [number, number, number],
   radius: number,
   slope: number,
-): NearPoint | null {
+): NearestPoint | null {
   const [ox, oy, oz] = origin;
   const [dx, dy, dz] = direction;
-  let bestPoint: NearPoint | null = null;
-  let bestDistance = Infinity;
+  let nearestPoint: NearestPoint | null = null;
+  let nearestDistance = Infinity;
   for (let i = 0; i < positions.length; i += 3) {
     const x = (positions[i] ?? 0) - ox;
     const y = (positions[i + 1] ?? 0) - oy;
     const z = (positions[i + 2] ?? 0) - oz;
     const distance = x * dx + y * dy + z * dz;
-    if (distance <= 0 || distance >= bestDistance) continue;
+    if (distance <= 0 || distance >= nearestDistance) continue;
     const limit = radius + slope * distance;
     if (x * x + y * y + z * z - distance * distance > limit * limit) continue;
-    bestDistance = distance;
-    bestPoint = { index: i / 3, distance };
+    nearestDistance = distance;
+    nearestPoint = { index: i / 3, distance };
   }
-  return bestPoint;
+  return nearestPoint;
 }

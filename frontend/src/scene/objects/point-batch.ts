@@ -9,13 +9,13 @@ import {
   type ShaderMaterial,
   type WebGLRenderer,
 } from "three";
-import { OPAQUE_FROM } from "../materials";
-import { pointMaterial, setLook, type PointLook, type PointVariant } from "./point-material";
+import { MIN_OPAQUE_ALPHA } from "../materials";
+import { createPointMaterial, setLook, type PointLook, type PointVariant } from "./point-material";
 
 /**
  * Up to this number, points are drawn as quads, which may be larger than the screen but are slow on software renderers.
  */
-const MAX_QUADS = 20_000;
+const MAX_QUAD_POINTS = 20_000;
 const CORNERS = [-1, -1, 1, -1, 1, 1, -1, 1] as const;
 
 /** Many points with one look in one draw call. */
@@ -25,8 +25,8 @@ export class PointBatch {
   /** Red, green, blue and alpha of each point; empty if all have the color of the look. */
   colors: Uint8Array = new Uint8Array(0);
   private object: Points<BufferGeometry, ShaderMaterial> | Mesh<BufferGeometry, ShaderMaterial> | null = null;
-  private variant = "";
-  private isTranslucent = false;
+  private variantKey = "";
+  private hasTranslucentColors = false;
 
   constructor(private look: PointLook) {}
 
@@ -34,16 +34,16 @@ export class PointBatch {
     return this.positions.length / 3;
   }
 
-  /** Sets the points, x y z of each in m; `isTranslucent` if some colors have less than full alpha. */
-  setPoints(positions: Float32Array, colors: Uint8Array, isTranslucent: boolean): void {
+  /** Sets the points, x y z of each in m; `hasTranslucentColors` if some have less than full alpha. */
+  setPoints(positions: Float32Array, colors: Uint8Array, hasTranslucentColors: boolean): void {
     this.positions = positions;
     this.colors = colors;
-    this.isTranslucent = isTranslucent;
+    this.hasTranslucentColors = hasTranslucentColors;
     this.build();
   }
 
   setLook(look: PointLook): void {
-    const needsNewMesh = this.variant !== JSON.stringify(this.variantFor(look));
+    const needsNewMesh = this.variantKey !== JSON.stringify(this.variantFor(look));
     this.look = look;
     if (needsNewMesh) this.build();
     else if (this.object) setLook(this.object.material, look);
@@ -58,8 +58,8 @@ export class PointBatch {
     return {
       style: look.style,
       isTinted: this.colors.length > 0,
-      hasQuads: look.style !== "Points" && this.count <= MAX_QUADS,
-      isSeeThrough: look.alpha < OPAQUE_FROM || this.isTranslucent,
+      hasQuads: look.style !== "Points" && this.count <= MAX_QUAD_POINTS,
+      isTranslucent: look.alpha < MIN_OPAQUE_ALPHA || this.hasTranslucentColors,
     };
   }
 
@@ -69,15 +69,15 @@ export class PointBatch {
     // three.js would look at every point to sort by distance.
     geometry.boundingSphere = new Sphere();
     const key = JSON.stringify(variant);
-    if (this.object && key === this.variant) {
+    if (this.object && key === this.variantKey) {
       this.object.geometry.dispose();
       this.object.geometry = geometry;
       setLook(this.object.material, this.look);
       return;
     }
     this.clear();
-    this.variant = key;
-    const material = pointMaterial(variant);
+    this.variantKey = key;
+    const material = createPointMaterial(variant);
     setLook(material, this.look);
     this.object = variant.hasQuads ? new Mesh(geometry, material) : new Points(geometry, material);
     // Computing their bounds costs more than drawing the points outside the view.
@@ -95,13 +95,13 @@ export class PointBatch {
   }
 }
 
-const area = new Vector4();
+const viewport = new Vector4();
 
 /** Sets the size of the render target in pixels, which the shader needs: the canvas, or a camera's image. */
 function setViewport(renderer: WebGLRenderer, material: ShaderMaterial): void {
-  renderer.getCurrentViewport(area);
+  renderer.getCurrentViewport(viewport);
   const uniform = material.uniforms["viewport"];
-  if (uniform) uniform.value = [area.z, area.w];
+  if (uniform) uniform.value = [viewport.z, viewport.w];
   material.uniformsNeedUpdate = true;
 }
 
@@ -114,17 +114,17 @@ function createPoints(positions: Float32Array, colors: Uint8Array): BufferGeomet
 /** Returns four corners for each point. */
 function createQuads(positions: Float32Array, colors: Uint8Array): BufferGeometry {
   const count = positions.length / 3;
-  const [places, corners] = [new Float32Array(count * 12), new Float32Array(count * 8)];
+  const [cornerPositions, corners] = [new Float32Array(count * 12), new Float32Array(count * 8)];
   const indices = new Uint32Array(count * 6);
   for (let i = 0; i < count; i++) {
     const position = positions.subarray(i * 3, i * 3 + 3);
-    for (let corner = 0; corner < 4; corner++) places.set(position, i * 12 + corner * 3);
+    for (let corner = 0; corner < 4; corner++) cornerPositions.set(position, i * 12 + corner * 3);
     corners.set(CORNERS, i * 8);
-    const first = i * 4;
-    indices.set([first, first + 1, first + 2, first, first + 2, first + 3], i * 6);
+    const firstVertex = i * 4;
+    indices.set([firstVertex, firstVertex + 1, firstVertex + 2, firstVertex, firstVertex + 2, firstVertex + 3], i * 6);
   }
   const geometry = new BufferGeometry().setIndex(new BufferAttribute(indices, 1));
-  geometry.setAttribute("position", new BufferAttribute(places, 3));
+  geometry.setAttribute("position", new BufferAttribute(cornerPositions, 3));
   geometry.setAttribute("corner", new BufferAttribute(corners, 2));
   if (colors.length > 0) {
     const tints = new Uint8Array(count * 16);

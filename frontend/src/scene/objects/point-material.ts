@@ -24,15 +24,15 @@ export interface PointVariant {
   isTinted: boolean;
   /** Whether each point is a quad; otherwise it is a point of the graphics library, whose size is limited. */
   hasQuads: boolean;
-  isSeeThrough: boolean;
+  isTranslucent: boolean;
 }
 
-// A point is drawn on a square that faces the camera and contains it. `place` is the position of a fragment on that
-// square, -1 to 1; `halfSide` is half the side of the square, m. Solid styles trace the ray through the fragment into the
-// point. All other values are constant over a point and therefore flat: interpolation makes software renderers a fifth
-// slower per point.
-const VERTEX = /* glsl */ `
-  uniform vec3 extent;
+// A point is drawn on a square that faces the camera and contains it. `squarePosition` is the position of a fragment on
+// that square, -1 to 1; `halfSide` is half the side of the square, m. Solid styles trace the ray through the fragment
+// into the point. All other values are constant over a point and therefore flat: interpolation makes software renderers
+// a fifth slower per point.
+const VERTEX_SHADER = /* glsl */ `
+  uniform vec3 size;
   uniform vec3 color;
   uniform float pixels;
   uniform float perDepth;
@@ -43,16 +43,16 @@ const VERTEX = /* glsl */ `
   #endif
   #ifdef QUADS
     in vec2 corner;
-    out vec2 place;
+    out vec2 vSquarePosition;
   #endif
   flat out vec4 vColor;
   #ifdef SOLID
-    flat out vec3 middle;
+    flat out vec3 center;
     flat out vec2 halfSide;
-    flat out vec3 side;
+    flat out vec3 pointSize;
   #else
     vec2 halfSide;
-    vec3 side;
+    vec3 pointSize;
   #endif
 
   void main() {
@@ -61,91 +61,91 @@ const VERTEX = /* glsl */ `
     #else
       vColor = vec4(color, alpha);
     #endif
-    side = perDepth > 0.0 ? vec3(perDepth * max(0.0, position.z)) : extent;
-    vec4 eye = modelViewMatrix * vec4(position, 1.0);
+    pointSize = perDepth > 0.0 ? vec3(perDepth * max(0.0, position.z)) : size;
+    vec4 viewPosition = modelViewMatrix * vec4(position, 1.0);
     #ifdef SOLID
-      middle = eye.xyz;
+      center = viewPosition.xyz;
     #endif
-    gl_Position = projectionMatrix * eye;
+    gl_Position = projectionMatrix * viewPosition;
     // Pixels of a meter there, along x and y of the screen.
-    vec2 scale = vec2(projectionMatrix[0][0], projectionMatrix[1][1]) * 0.5 * viewport / gl_Position.w;
+    vec2 pixelsPerMeter = vec2(projectionMatrix[0][0], projectionMatrix[1][1]) * 0.5 * viewport / gl_Position.w;
     #if defined(FIXED)
-      halfSide = vec2(pixels * 0.5) / scale;
+      halfSide = vec2(pixels * 0.5) / pixelsPerMeter;
     #elif defined(SOLID)
-      halfSide = vec2(length(side) * 0.5 * REACH);
+      halfSide = vec2(length(pointSize) * 0.5 * REACH);
     #else
-      halfSide = side.xy * 0.5;
+      halfSide = pointSize.xy * 0.5;
     #endif
-    halfSide = max(halfSide, vec2(0.5) / scale);
+    halfSide = max(halfSide, vec2(0.5) / pixelsPerMeter);
     #ifdef QUADS
-      place = corner;
-      gl_Position = projectionMatrix * vec4(eye.xyz + vec3(corner * halfSide, 0.0), 1.0);
+      vSquarePosition = corner;
+      gl_Position = projectionMatrix * vec4(viewPosition.xyz + vec3(corner * halfSide, 0.0), 1.0);
     #else
-      gl_PointSize = max(halfSide.x * scale.x, halfSide.y * scale.y) * 2.0;
-      halfSide = vec2(gl_PointSize * 0.5) / scale;
+      gl_PointSize = max(halfSide.x * pixelsPerMeter.x, halfSide.y * pixelsPerMeter.y) * 2.0;
+      halfSide = vec2(gl_PointSize * 0.5) / pixelsPerMeter;
     #endif
   }
 `;
 
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   precision highp float;
   uniform mat4 projectionMatrix;
   uniform mat4 modelViewMatrix;
   flat in vec4 vColor;
   #ifdef SOLID
-    flat in vec3 middle;
+    flat in vec3 center;
     flat in vec2 halfSide;
-    flat in vec3 side;
+    flat in vec3 pointSize;
   #endif
   #ifdef QUADS
-    in vec2 place;
+    in vec2 vSquarePosition;
   #endif
-  out vec4 fragment;
+  out vec4 fragmentColor;
 
   void main() {
     #ifdef QUADS
-      vec2 at = place;
+      vec2 squarePosition = vSquarePosition;
     #else
-      vec2 at = vec2(gl_PointCoord.x, 1.0 - gl_PointCoord.y) * 2.0 - 1.0;
+      vec2 squarePosition = vec2(gl_PointCoord.x, 1.0 - gl_PointCoord.y) * 2.0 - 1.0;
     #endif
-    vec3 paint = vColor.rgb;
+    vec3 pointColor = vColor.rgb;
     #ifdef ROUND
-      float square = dot(at, at);
-      if (square > 1.0) discard;
-      paint *= 0.4 + 0.6 * sqrt(1.0 - square);
+      float squaredRadius = dot(squarePosition, squarePosition);
+      if (squaredRadius > 1.0) discard;
+      pointColor *= 0.4 + 0.6 * sqrt(1.0 - squaredRadius);
     #endif
     #ifdef RIMMED
-      vec2 edge = smoothstep(vec2(0.9), vec2(0.96), abs(at));
-      paint += (length(paint) > 0.5 ? -0.2 : 0.2) * max(edge.x, edge.y);
+      vec2 rim = smoothstep(vec2(0.9), vec2(0.96), abs(squarePosition));
+      pointColor += (length(pointColor) > 0.5 ? -0.2 : 0.2) * max(rim.x, rim.y);
     #endif
     #ifdef SOLID
-      vec3 through = middle + vec3(at * halfSide, 0.0);
-      bool parallel = projectionMatrix[3][3] == 1.0;
-      mat3 turn = mat3(modelViewMatrix);
-      // The ray in the frame of the points, from the middle of this one.
-      vec3 ray = (parallel ? vec3(0.0, 0.0, -1.0) : through) * turn;
-      ray += vec3(lessThan(abs(ray), vec3(1e-6))) * 2e-6; // keep the ray from being parallel to a side
-      vec3 from = ((parallel ? through : vec3(0.0)) - middle) * turn;
-      float reached;
+      vec3 squarePoint = center + vec3(squarePosition * halfSide, 0.0);
+      bool hasParallelRays = projectionMatrix[3][3] == 1.0;
+      mat3 rotation = mat3(modelViewMatrix);
+      // The ray in the frame of the points, relative to the center of this one.
+      vec3 rayDirection = (hasParallelRays ? vec3(0.0, 0.0, -1.0) : squarePoint) * rotation;
+      rayDirection += vec3(lessThan(abs(rayDirection), vec3(1e-6))) * 2e-6; // keep the ray from being parallel to a side
+      vec3 rayStart = ((hasParallelRays ? squarePoint : vec3(0.0)) - center) * rotation;
+      float hitDistance;
       #ifdef FLAT
-        reached = -from.z / ray.z;
-        vec3 hit = from + ray * reached;
-        if (any(greaterThan(abs(hit.xy), side.xy * 0.5))) discard;
+        hitDistance = -rayStart.z / rayDirection.z;
+        vec3 hit = rayStart + rayDirection * hitDistance;
+        if (any(greaterThan(abs(hit.xy), pointSize.xy * 0.5))) discard;
       #else
-        vec3 toward = -sign(ray) * side * 0.5;
-        vec3 enter = (toward - from) / ray;
-        vec3 leave = (-toward - from) / ray;
-        reached = max(max(enter.x, enter.y), enter.z);
-        if (reached > min(min(leave.x, leave.y), leave.z)) discard;
+        vec3 nearSides = -sign(rayDirection) * pointSize * 0.5;
+        vec3 entryDistances = (nearSides - rayStart) / rayDirection;
+        vec3 exitDistances = (-nearSides - rayStart) / rayDirection;
+        hitDistance = max(max(entryDistances.x, entryDistances.y), entryDistances.z);
+        if (hitDistance > min(min(exitDistances.x, exitDistances.y), exitDistances.z)) discard;
         // As bright as RViz draws the six sides.
-        vec3 bright = vec3(ray.x < 0.0 ? 0.9 : 0.5, ray.y < 0.0 ? 0.6 : 0.6, ray.z < 0.0 ? 1.0 : 0.4);
-        paint *= reached == enter.z ? bright.z : reached == enter.y ? bright.y : bright.x;
+        vec3 brightness = vec3(rayDirection.x < 0.0 ? 0.9 : 0.5, rayDirection.y < 0.0 ? 0.6 : 0.6, rayDirection.z < 0.0 ? 1.0 : 0.4);
+        pointColor *= hitDistance == entryDistances.z ? brightness.z : hitDistance == entryDistances.y ? brightness.y : brightness.x;
       #endif
-      float depth = parallel ? through.z - reached : through.z * reached;
-      vec2 clip = vec2(projectionMatrix[2][2] * depth + projectionMatrix[3][2], parallel ? 1.0 : -depth);
-      gl_FragDepth = clamp(clip.x / clip.y * 0.5 + 0.5, 0.0, 1.0);
+      float depth = hasParallelRays ? squarePoint.z - hitDistance : squarePoint.z * hitDistance;
+      vec2 clipPosition = vec2(projectionMatrix[2][2] * depth + projectionMatrix[3][2], hasParallelRays ? 1.0 : -depth);
+      gl_FragDepth = clamp(clipPosition.x / clipPosition.y * 0.5 + 0.5, 0.0, 1.0);
     #endif
-    fragment = vec4(clamp(paint, 0.0, 1.0), vColor.a);
+    fragmentColor = vec4(clamp(pointColor, 0.0, 1.0), vColor.a);
   }
 `;
 
@@ -161,28 +161,28 @@ const DEFINES: Readonly<Record<PointStyle, Record<string, string>>> = {
 };
 
 /** Returns the material of a variant; `setLook` and `setViewport` set its uniforms. */
-export function pointMaterial({ style, isTinted, hasQuads, isSeeThrough }: PointVariant): ShaderMaterial {
+export function createPointMaterial({ style, isTinted, hasQuads, isTranslucent }: PointVariant): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
-    vertexShader: VERTEX,
-    fragmentShader: FRAGMENT,
+    vertexShader: VERTEX_SHADER,
+    fragmentShader: FRAGMENT_SHADER,
     defines: { ...DEFINES[style], ...(isTinted && { TINTED: "" }), ...(hasQuads && { QUADS: "" }) },
     uniforms: {
-      extent: { value: new Vector3() },
+      size: { value: new Vector3() },
       color: { value: new Color() },
       pixels: { value: 1 },
       perDepth: { value: 0 },
       alpha: { value: 1 },
       viewport: { value: [1, 1] },
     },
-    transparent: isSeeThrough,
-    depthWrite: !isSeeThrough,
+    transparent: isTranslucent,
+    depthWrite: !isTranslucent,
   });
 }
 
 /** Applies the parts of a look that do not need another shader. */
 export function setLook({ uniforms }: ShaderMaterial, look: PointLook): void {
-  (uniforms["extent"]?.value as Vector3).fromArray(look.size);
+  (uniforms["size"]?.value as Vector3).fromArray(look.size);
   (uniforms["color"]?.value as Color).set(look.color);
   for (const name of ["pixels", "perDepth", "alpha"] as const) {
     const uniform = uniforms[name];

@@ -18,54 +18,54 @@ export interface Ribbons {
  * @param colors - r g b a, 0 to 1, of the points of each strip.
  */
 export function createRibbons(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): Ribbons {
-  const points = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
-  const pieces = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
-  const result: Ribbons = {
-    positions: new Float32Array(points * 6),
-    directions: new Float32Array(points * 6),
-    sides: new Float32Array(points * 2),
-    colors: colors && new Float32Array(points * 8),
-    indices: new Uint32Array(pieces * 6),
+  const pointCount = strips.reduce((sum, strip) => sum + strip.length / 3, 0);
+  const segmentCount = strips.reduce((sum, strip) => sum + Math.max(0, strip.length / 3 - 1), 0);
+  const ribbons: Ribbons = {
+    positions: new Float32Array(pointCount * 6),
+    directions: new Float32Array(pointCount * 6),
+    sides: new Float32Array(pointCount * 2),
+    colors: colors && new Float32Array(pointCount * 8),
+    indices: new Uint32Array(segmentCount * 6),
   };
   let [vertex, index] = [0, 0];
-  strips.forEach((strip, number) => {
+  strips.forEach((strip, stripIndex) => {
     const count = strip.length / 3;
     for (let i = 0; i < count; i++) {
       const point = strip.subarray(i * 3, i * 3 + 3);
-      const tangent = directionAt(strip, i);
-      const color = colors?.[number]?.subarray(i * 4, i * 4 + 4);
+      const tangent = computeTangent(strip, i);
+      const color = colors?.[stripIndex]?.subarray(i * 4, i * 4 + 4);
       for (const side of [-0.5, 0.5]) {
-        result.positions.set(point, vertex * 3);
-        result.directions.set(tangent, vertex * 3);
-        result.sides[vertex] = side;
-        if (color) result.colors?.set(color, vertex * 4);
+        ribbons.positions.set(point, vertex * 3);
+        ribbons.directions.set(tangent, vertex * 3);
+        ribbons.sides[vertex] = side;
+        if (color) ribbons.colors?.set(color, vertex * 4);
         vertex += 1;
       }
       if (i === 0) continue;
-      result.indices.set([vertex - 4, vertex - 3, vertex - 1, vertex - 4, vertex - 1, vertex - 2], index);
+      ribbons.indices.set([vertex - 4, vertex - 3, vertex - 1, vertex - 4, vertex - 1, vertex - 2], index);
       index += 6;
     }
   });
-  return result;
+  return ribbons;
 }
 
 /** Returns both ends of every segment of a line strip. */
-export function segmentsOf(strip: Float32Array, itemSize = 3): Float32Array {
+export function splitIntoSegments(strip: Float32Array, itemSize = 3): Float32Array {
   const count = Math.max(0, strip.length / itemSize - 1);
-  const result = new Float32Array(count * 2 * itemSize);
+  const segments = new Float32Array(count * 2 * itemSize);
   for (let i = 0; i < count; i++) {
-    result.set(strip.subarray(i * itemSize, (i + 2) * itemSize), i * 2 * itemSize);
+    segments.set(strip.subarray(i * itemSize, (i + 2) * itemSize), i * 2 * itemSize);
   }
-  return result;
+  return segments;
 }
 
 /** Returns a strip of two points for each segment (x y z, x y z). */
-export function stripsOf(segments: Float32Array, itemSize = 3): Float32Array[] {
+export function splitIntoStrips(segments: Float32Array, itemSize = 3): Float32Array[] {
   const size = 2 * itemSize;
   return Array.from({ length: Math.floor(segments.length / size) }, (_, i) => segments.subarray(i * size, (i + 1) * size));
 }
 
-function directionAt(strip: Float32Array, i: number): [number, number, number] {
+function computeTangent(strip: Float32Array, i: number): [number, number, number] {
   const incoming = computeSegmentDirection(strip, i - 1);
   const outgoing = computeSegmentDirection(strip, i);
   const sum: [number, number, number] = [incoming[0] + outgoing[0], incoming[1] + outgoing[1], incoming[2] + outgoing[2]];

@@ -5,64 +5,64 @@ import { SURFACE_LIGHT } from "../light";
 export const TEXELS_PER_SLOT = 4;
 const SLOTS_PER_ROW = 64;
 
-const READING = /* glsl */ `
+const SLOT_FUNCTIONS = /* glsl */ `
   attribute float slot;
   uniform highp sampler2D slots;
-  vec4 texel(int part) {
+  vec4 readTexel(int part) {
     int index = int(slot + 0.5);
     return texelFetch(slots, ivec2((index % ${SLOTS_PER_ROW}) * ${TEXELS_PER_SLOT} + part, index / ${SLOTS_PER_ROW}), 0);
   }
-  vec3 unpacked(float rgb) {
+  vec3 unpackColor(float rgb) {
     return vec3((uvec3(rgb) >> uvec3(16u, 8u, 0u)) & 255u) * (1.0 / 255.0);
   }
 `;
-const LIGHT = /* glsl */ `
+const LIGHT_FUNCTIONS = /* glsl */ `
   uniform bool isSoft;
   ${SURFACE_LIGHT}
-  vec3 lit(vec3 color, vec3 normal) { return isSoft ? softly(color, normal) : byCamera(color, normal.z); }
+  vec3 applyLight(vec3 color, vec3 normal) { return isSoft ? applySoftLight(color, normal) : applyCameraLight(color, normal.z); }
 `;
-const VERTEX = /* glsl */ `
-  ${READING}
-  ${LIGHT}
+const VERTEX_SHADER = /* glsl */ `
+  ${SLOT_FUNCTIONS}
+  ${LIGHT_FUNCTIONS}
   attribute vec3 color;
   varying vec4 vColor;
   void main() {
-    vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2), look = texel(3);
-    mat3 turn = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
-    vec3 across = normal / vec3(dot(turn[0], turn[0]), dot(turn[1], turn[1]), dot(turn[2], turn[2]));
-    vec3 facing = normalize(mat3(modelViewMatrix) * turn * across);
-    vColor = vec4(lit(mix(color * unpacked(look.z), vec3(0.7), look.x), facing), look.y);
-    vec3 at = turn * position + vec3(row0.w, row1.w, row2.w);
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
+    vec4 row0 = readTexel(0), row1 = readTexel(1), row2 = readTexel(2), look = readTexel(3);
+    mat3 linearPart = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
+    vec3 unscaledNormal = normal / vec3(dot(linearPart[0], linearPart[0]), dot(linearPart[1], linearPart[1]), dot(linearPart[2], linearPart[2]));
+    vec3 viewNormal = normalize(mat3(modelViewMatrix) * linearPart * unscaledNormal);
+    vColor = vec4(applyLight(mix(color * unpackColor(look.z), vec3(0.7), look.x), viewNormal), look.y);
+    vec3 objectPosition = linearPart * position + vec3(row0.w, row1.w, row2.w);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(objectPosition, 1.0);
   }
 `;
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   varying vec4 vColor;
   void main() { gl_FragColor = vColor; }
 `;
 
 // Both sides are lit, as in three.js: a normal belongs to the side from which the triangle's corners run
 // counterclockwise.
-const LIT_VERTEX = /* glsl */ `
-  ${READING}
+const LIT_VERTEX_SHADER = /* glsl */ `
+  ${SLOT_FUNCTIONS}
   flat varying vec3 vColor;
   varying vec3 vNormal;
   void main() {
-    vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2);
-    mat3 turn = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
-    vec3 across = normal / vec3(dot(turn[0], turn[0]), dot(turn[1], turn[1]), dot(turn[2], turn[2]));
-    vNormal = normalize(mat3(modelViewMatrix) * turn * across) * sign(determinant(turn));
-    vColor = unpacked(texel(3).z);
-    vec3 at = turn * position + vec3(row0.w, row1.w, row2.w);
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
+    vec4 row0 = readTexel(0), row1 = readTexel(1), row2 = readTexel(2);
+    mat3 linearPart = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
+    vec3 unscaledNormal = normal / vec3(dot(linearPart[0], linearPart[0]), dot(linearPart[1], linearPart[1]), dot(linearPart[2], linearPart[2]));
+    vNormal = normalize(mat3(modelViewMatrix) * linearPart * unscaledNormal) * sign(determinant(linearPart));
+    vColor = unpackColor(readTexel(3).z);
+    vec3 objectPosition = linearPart * position + vec3(row0.w, row1.w, row2.w);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(objectPosition, 1.0);
   }
 `;
-const LIT_FRAGMENT = /* glsl */ `
-  ${LIGHT}
+const LIT_FRAGMENT_SHADER = /* glsl */ `
+  ${LIGHT_FUNCTIONS}
   flat varying vec3 vColor;
   varying vec3 vNormal;
   void main() {
-    gl_FragColor = vec4(lit(vColor, normalize(vNormal) * (gl_FrontFacing ? 1.0 : -1.0)), 1.0);
+    gl_FragColor = vec4(applyLight(vColor, normalize(vNormal) * (gl_FrontFacing ? 1.0 : -1.0)), 1.0);
   }
 `;
 
@@ -91,7 +91,7 @@ export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, col
  * faster.
  */
 export function createSlotMaterial(slots: { value: Texture }, isSoft = { value: false }): ShaderMaterial {
-  return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots, isSoft } });
+  return new ShaderMaterial({ vertexShader: VERTEX_SHADER, fragmentShader: FRAGMENT_SHADER, uniforms: { slots, isSoft } });
 }
 
 /**
@@ -99,5 +99,5 @@ export function createSlotMaterial(slots: { value: Texture }, isSoft = { value: 
  * the camera.
  */
 export function createLitSlotMaterial(slots: { value: Texture }, isSoft: { value: boolean }): ShaderMaterial {
-  return new ShaderMaterial({ vertexShader: LIT_VERTEX, fragmentShader: LIT_FRAGMENT, uniforms: { slots, isSoft }, side: DoubleSide });
+  return new ShaderMaterial({ vertexShader: LIT_VERTEX_SHADER, fragmentShader: LIT_FRAGMENT_SHADER, uniforms: { slots, isSoft }, side: DoubleSide });
 }

@@ -8,7 +8,7 @@ import {
   type ColorRepresentation,
 } from "three";
 import { areTranslucent, setBlending } from "../materials";
-import { segmentsOf } from "./ribbons";
+import { splitIntoSegments } from "./ribbons";
 
 /** Lines one pixel wide, unlit; with the same methods as `WideLines`. */
 export class ThinLines {
@@ -27,7 +27,7 @@ export class ThinLines {
     if (colors) geometry.setAttribute("color", new BufferAttribute(colors, 4));
     this.root.geometry.dispose();
     this.root.geometry = geometry;
-    this.show();
+    this.updateVisibility();
     this.updateMaterial();
   }
 
@@ -39,7 +39,7 @@ export class ThinLines {
   /** Whether the lines are shown. */
   set isShown(isShown: boolean) {
     this.isEnabled = isShown;
-    this.show();
+    this.updateVisibility();
   }
 
   /**
@@ -48,8 +48,8 @@ export class ThinLines {
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
     this.setSegments(
-      concatenate(strips.map((strip) => segmentsOf(strip))),
-      colors && concatenate(colors.map((color) => segmentsOf(color, 4))),
+      concatenate(strips.map((strip) => splitIntoSegments(strip))),
+      colors && concatenate(colors.map((color) => splitIntoSegments(color, 4))),
     );
   }
 
@@ -71,7 +71,7 @@ export class ThinLines {
     this.root.material.dispose();
   }
 
-  private show(): void {
+  private updateVisibility(): void {
     this.root.visible = this.isEnabled && this.count > 0;
   }
 

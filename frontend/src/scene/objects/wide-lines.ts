@@ -9,9 +9,9 @@ import {
   type ColorRepresentation,
 } from "three";
 import { areTranslucent, setBlending } from "../materials";
-import { createRibbons, stripsOf } from "./ribbons";
+import { createRibbons, splitIntoStrips } from "./ribbons";
 
-const VERTEX = /* glsl */ `
+const VERTEX_SHADER = /* glsl */ `
   attribute vec3 direction;
   attribute float side;
   #ifdef COLORED
@@ -25,14 +25,14 @@ const VERTEX = /* glsl */ `
     #else
       vColor = vec4(1.0);
     #endif
-    vec4 at = modelViewMatrix * vec4(position, 1.0);
-    vec3 sight = isOrthographic ? vec3(0.0, 0.0, -1.0) : at.xyz;
-    vec3 across = cross(mat3(modelViewMatrix) * direction, sight);
-    at.xyz += normalize(across) * side * width;
-    gl_Position = projectionMatrix * at;
+    vec4 viewPosition = modelViewMatrix * vec4(position, 1.0);
+    vec3 lineOfSight = isOrthographic ? vec3(0.0, 0.0, -1.0) : viewPosition.xyz;
+    vec3 sideDirection = cross(mat3(modelViewMatrix) * direction, lineOfSight);
+    viewPosition.xyz += normalize(sideDirection) * side * width;
+    gl_Position = projectionMatrix * viewPosition;
   }
 `;
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   uniform vec4 color;
   varying vec4 vColor;
   void main() { gl_FragColor = color * vColor; }
@@ -50,7 +50,7 @@ export class WideLines {
     const uniforms = { width: { value: 0.01 }, color: { value: [1, 1, 1, 1] } };
     this.root = new Mesh(
       new BufferGeometry(),
-      new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, side: DoubleSide }),
+      new ShaderMaterial({ vertexShader: VERTEX_SHADER, fragmentShader: FRAGMENT_SHADER, uniforms, side: DoubleSide }),
     );
     this.root.frustumCulled = false;
     this.root.visible = false;
@@ -58,7 +58,7 @@ export class WideLines {
 
   /** Sets segments by x y z of both ends of each; `colors` has r g b a of both ends, 0 to 1. */
   setSegments(segments: Float32Array, colors: Float32Array | null = null): void {
-    this.setStrips(stripsOf(segments), colors && stripsOf(colors, 4));
+    this.setStrips(splitIntoStrips(segments), colors && splitIntoStrips(colors, 4));
   }
 
   /**
@@ -66,15 +66,15 @@ export class WideLines {
    * color.
    */
   setStrips(strips: readonly Float32Array[], colors: readonly Float32Array[] | null = null): void {
-    const result = createRibbons(strips, colors);
-    const geometry = new BufferGeometry().setIndex(new BufferAttribute(result.indices, 1));
-    geometry.setAttribute("position", new BufferAttribute(result.positions, 3));
-    geometry.setAttribute("direction", new BufferAttribute(result.directions, 3));
-    geometry.setAttribute("side", new BufferAttribute(result.sides, 1));
-    if (result.colors) geometry.setAttribute("rgba", new BufferAttribute(result.colors, 4));
+    const ribbons = createRibbons(strips, colors);
+    const geometry = new BufferGeometry().setIndex(new BufferAttribute(ribbons.indices, 1));
+    geometry.setAttribute("position", new BufferAttribute(ribbons.positions, 3));
+    geometry.setAttribute("direction", new BufferAttribute(ribbons.directions, 3));
+    geometry.setAttribute("side", new BufferAttribute(ribbons.sides, 1));
+    if (ribbons.colors) geometry.setAttribute("rgba", new BufferAttribute(ribbons.colors, 4));
     this.root.geometry.dispose();
     this.root.geometry = geometry;
-    this.root.visible = result.indices.length > 0;
+    this.root.visible = ribbons.indices.length > 0;
     this.updateMaterial();
   }
 

@@ -6,10 +6,10 @@ import type { MeshPart } from "../meshes/mesh-template";
  * Extrudes polygons (x y x y ...) along z; a polygon within another is a hole, and one within a hole is solid again.
  */
 export function extrudePolygons(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
-  const polygons = outlines.map((numbers) => {
-    return Array.from({ length: Math.floor(numbers.length / 2) }, (_, i) => new Vector2(numbers[2 * i], numbers[2 * i + 1]));
+  const polygons = outlines.map((coordinates) => {
+    return Array.from({ length: Math.floor(coordinates.length / 2) }, (_, i) => new Vector2(coordinates[2 * i], coordinates[2 * i + 1]));
   }).filter((points) => points.length > 2);
-  const enclosingPolygons = polygons.map((points) => polygons.filter((candidate) => candidate !== points && contains(candidate, points[0])));
+  const enclosingPolygons = polygons.map((points) => polygons.filter((candidate) => candidate !== points && containsPoint(candidate, points[0])));
   const shapes: Outline[] = [];
   polygons.forEach((points, i) => {
     if ((enclosingPolygons[i] ?? []).length % 2 === 1) return;
@@ -51,12 +51,12 @@ export function selectSubmesh(parts: readonly MeshPart[], selection: Submesh | n
  * @param size - x, y, z of the ground, the offset of its center, and the side length that a texture covers, m.
  */
 export function createHeightmap(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
-  const [x = 1, y = 1, z = 1, dx = 0, dy = 0, dz = 0, tile = 1] = size;
+  const [x = 1, y = 1, z = 1, dx = 0, dy = 0, dz = 0, tileSize = 1] = size;
   const rows = Math.floor(heights.length / Math.max(1, columns));
   const geometry = new PlaneGeometry(x, y, Math.max(1, columns - 1), Math.max(1, rows - 1));
   const positions = geometry.getAttribute("position");
   const uvs = geometry.getAttribute("uv");
-  const [tilesX, tilesY] = tile > 0 ? [x / tile, y / tile] : [1, 1];
+  const [tilesX, tilesY] = tileSize > 0 ? [x / tileSize, y / tileSize] : [1, 1];
   for (let i = 0; i < positions.count; i++) {
     // The vertices of a plane start at the greatest y.
     const row = rows - 1 - Math.floor(i / columns);
@@ -68,12 +68,14 @@ export function createHeightmap(heights: Float32Array, columns: number, size: re
   return geometry;
 }
 
-function contains(polygon: readonly Vector2[], point: Vector2 | undefined): boolean {
+function containsPoint(polygon: readonly Vector2[], point: Vector2 | undefined): boolean {
   if (!point || ShapeUtils.area([...polygon]) === 0) return false;
   let isInside = false;
-  polygon.forEach((a, i) => {
-    const b = polygon[(i + 1) % polygon.length] ?? a;
-    if (a.y > point.y !== b.y > point.y && point.x < ((b.x - a.x) * (point.y - a.y)) / (b.y - a.y) + a.x) isInside = !isInside;
+  polygon.forEach((edgeStart, i) => {
+    const edgeEnd = polygon[(i + 1) % polygon.length] ?? edgeStart;
+    if (edgeStart.y > point.y === edgeEnd.y > point.y) return;
+    const crossingX = ((edgeEnd.x - edgeStart.x) * (point.y - edgeStart.y)) / (edgeEnd.y - edgeStart.y) + edgeStart.x;
+    if (point.x < crossingX) isInside = !isInside;
   });
   return isInside;
 }

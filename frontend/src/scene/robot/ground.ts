@@ -13,15 +13,15 @@ const STANDING_TOLERANCE = 0.01;
  * @param boxes - the bounding boxes of the visible parts of each link, by its name.
  */
 export function computeGroundHeight(robot: Pick<RobotScene, "links" | "joints">, boxes: ReadonlyMap<string, Box3>): number {
-  const bounds = unionOf(boxes, [...boxes.keys()]);
+  const bounds = uniteBoxes(boxes, [...boxes.keys()]);
   if (bounds.isEmpty()) return 0;
   const margin = STANDING_TOLERANCE * bounds.getSize(new Vector3()).length();
-  const base = unionOf(boxes, listFixedLinks(robot));
-  const standsOnGround = !base.isEmpty() && Math.abs(base.min.z) <= margin;
+  const baseBox = uniteBoxes(boxes, listFixedLinks(robot));
+  const standsOnGround = !baseBox.isEmpty() && Math.abs(baseBox.min.z) <= margin;
   return standsOnGround || bounds.min.z >= -margin ? 0 : bounds.min.z;
 }
 
-function unionOf(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
+function uniteBoxes(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3 {
   const box = new Box3();
   for (const link of links) {
     const linkBox = boxes.get(link);

@@ -2,7 +2,7 @@ import { Group, Matrix4, type Mesh, type Object3D } from "three";
 import type { LinkScene } from "../../protocol";
 import type { LinkOverride } from "../../state/comparison";
 import type { MaterialPool } from "../materials";
-import type { StandIns } from "../meshes/stand-ins";
+import type { LodMeshes } from "../meshes/lod-meshes";
 import { LinkTrail } from "./link-trail";
 import type { MovingPiece } from "./moving-meshes";
 import { ShapeDrawing, type ShapePiece, type InspectedShape } from "./shape-drawing";
@@ -25,17 +25,17 @@ export interface LinkStyle {
 /** Draws a part of a robot at another pose than that of its description. */
 export interface Displacement {
   /** Changes the pose of a link in the fixed frame. */
-  readonly link?: (name: string, matrix: Matrix4) => void;
-  /** Moves a shape of a link: the one with index `among` among the shapes at `from` in the link. */
-  readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly among: number; readonly from: Matrix4; readonly to: Matrix4 };
+  readonly moveLink?: (name: string, matrix: Matrix4) => void;
+  /** Moves a shape of a link: the one with this `index` among the shapes at `from` in the link. */
+  readonly movedShape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly index: number; readonly from: Matrix4; readonly to: Matrix4 };
 }
 
 /** In contrast mode: the factor for the visuals' alpha, and the color and alpha of collisions. */
 const PALE_FACTOR = 0.3;
-const COLLISION: LinkOverride = { color: [1, 0.55, 0.1] };
+const COLLISION_OVERRIDE: LinkOverride = { color: [1, 0.55, 0.1] };
 const COLLISION_ALPHA = 0.55;
 
-const scratch = new Matrix4();
+const scratchMatrix = new Matrix4();
 
 /** Computes the pose of a link in the fixed frame; returns false, and leaves `matrix` unchanged, if it is unknown. */
 export type ReadLinkPose = (link: LinkScene, matrix: Matrix4) => boolean;
@@ -99,7 +99,7 @@ export class LinkDrawing {
   /** Adds the shapes that are drawn in batches with those of other links. */
   addSolids(solids: Solids): void {
     for (const { solid } of this.shownShapes) {
-      if (solid) solids.add(solid.kind, scratch.multiplyMatrices(this.root.matrix, solid.matrix), solid.color);
+      if (solid) solids.add(solid.kind, scratchMatrix.multiplyMatrices(this.root.matrix, solid.matrix), solid.color);
     }
   }
 
@@ -107,11 +107,11 @@ export class LinkDrawing {
    * Adds the meshes that are drawn together with those of other links while the robot moves, see
    * `ShapeDrawing.addPieces`.
    */
-  addPieces(standIns: StandIns, meshes: Mesh[], pieces: MovingPiece[]): boolean {
+  addPieces(lodMeshes: LodMeshes, meshes: Mesh[], pieces: MovingPiece[]): boolean {
     const linkPieces: ShapePiece[] = [];
-    const results = this.shownShapes.map((shape) => shape.addPieces(standIns, meshes, linkPieces));
-    for (const { standIn, matrix, color } of linkPieces) {
-      pieces.push({ standIn, matrix: new Matrix4().multiplyMatrices(this.root.matrix, matrix), color });
+    const results = this.shownShapes.map((shape) => shape.addPieces(lodMeshes, meshes, linkPieces));
+    for (const { lodMesh, matrix, color } of linkPieces) {
+      pieces.push({ lodMesh, matrix: new Matrix4().multiplyMatrices(this.root.matrix, matrix), color });
     }
     return results.every((isComplete) => isComplete);
   }
@@ -129,7 +129,7 @@ export class LinkDrawing {
     const alpha = override?.isOpaque === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
     for (const visual of this.visuals) visual.paint(this.pool, isContrastHigh ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
     for (const collision of this.collisions) {
-      if (isContrastHigh) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION);
+      if (isContrastHigh) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION_OVERRIDE);
       else collision.paint(this.pool, alpha, this.hasLostTransform, override);
     }
   }
@@ -148,14 +148,14 @@ export class LinkDrawing {
   }
 
   /** Draws one of its shapes at another pose; null restores all. */
-  displaceShape(displaced: Displacement["shape"] | null): void {
+  displaceShape(displaced: Displacement["movedShape"] | null): void {
     for (const shape of [...this.visuals, ...this.collisions]) shape.displace(null);
     const { style } = this;
     // Show a collision that is being moved even if collisions are hidden.
     this.collisionGroup.visible = (style.showsCollision || style.isContrastHigh || displaced?.kind === "collision") && style.isEnabled;
     if (!displaced) return;
     const shapes = displaced.kind === "visual" ? this.visuals : this.collisions;
-    shapes.filter((shape) => shape.isAt(displaced.from))[displaced.among]?.displace(displaced.to);
+    shapes.filter((shape) => shape.isAt(displaced.from))[displaced.index]?.displace(displaced.to);
   }
 
   /** Returns what is drawn, for tests. */

@@ -1,9 +1,9 @@
 import { Vector3, type Matrix4, type Object3D } from "three";
 import { WideLines } from "../objects/wide-lines";
 
-const LENGTH = 2;
-const ELEMENT_COUNT = 100;
-const WIDTH = 0.01;
+const LENGTH_M = 2;
+const MAX_POINT_COUNT = 100;
+const WIDTH_M = 0.01;
 const COLOR = 0x008080;
 
 /** The ribbon behind a link: the last 2 m of its path in 100 points. */
@@ -14,16 +14,16 @@ export class LinkTrail {
 
   constructor(world: Object3D) {
     world.add(this.ribbon.root);
-    this.ribbon.setStyle(COLOR, 1, WIDTH);
+    this.ribbon.setStyle(COLOR, 1, WIDTH_M);
   }
 
   follow(pose: Matrix4): void {
     const position = new Vector3().setFromMatrixPosition(pose);
-    const [head, neck] = this.points;
-    if (head?.equals(position)) return;
-    if (!head || !neck || head.distanceTo(neck) >= LENGTH / ELEMENT_COUNT) this.points.unshift(position);
+    const [newestPoint, previousPoint] = this.points;
+    if (newestPoint?.equals(position)) return;
+    if (!newestPoint || !previousPoint || newestPoint.distanceTo(previousPoint) >= LENGTH_M / MAX_POINT_COUNT) this.points.unshift(position);
     else this.points[0] = position;
-    this.points.length = Math.min(this.points.length, ELEMENT_COUNT);
+    this.points.length = Math.min(this.points.length, MAX_POINT_COUNT);
     this.ribbon.setStrips([new Float32Array(this.points.flatMap((point) => point.toArray()))]);
   }
 

@@ -31,22 +31,22 @@ export class RobotDrawing {
   private readonly links: ReadonlyMap<string, LinkDrawing>;
   private readonly extras: RobotExtras;
   private readonly solids: Solids;
-  private readonly moving: MovingMeshes;
-  private readonly linkOf = new Map<number, string>();
+  private readonly movingMeshes: MovingMeshes;
+  private readonly linkByMesh = new Map<number, string>();
   private loadingCount: number;
 
-  constructor(private readonly scene: DrawnLinks, private readonly meshes: MeshLibrary, report: MeshReport, onChanged: () => void) {
+  constructor(private readonly scene: DrawnLinks, private readonly meshes: MeshLibrary, reportMesh: MeshReport, onChanged: () => void) {
     this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
     for (const link of this.links.values()) this.root.add(link.root);
     this.extras = new RobotExtras(scene, this.root);
     this.solids = new Solids(this.root);
-    this.moving = new MovingMeshes(this.root);
+    this.movingMeshes = new MovingMeshes(this.root);
     const loads: Promise<void>[] = [];
     for (const link of this.links.values()) {
       for (const shape of [...link.visuals, ...link.collisions]) {
         const { url, texture, surface } = shape.shape;
         if (url === null && texture === null && surface === null) continue;
-        loads.push(this.load(link, shape, report, onChanged));
+        loads.push(this.load(link, shape, reportMesh, onChanged));
       }
     }
     this.loadingCount = loads.length;
@@ -124,14 +124,14 @@ export class RobotDrawing {
   }
 
   /**
-   * Applies the display's properties. `isContrastHigh` draws collisions over pale visuals; `overrideOf` returns the colors that
-   * replace those of a link.
+   * Applies the display's properties. `isContrastHigh` draws collisions over pale visuals; `overrideOf` returns the
+   * colors that replace those of a link.
    */
   applyStyle(rows: PropertyRows, isContrastHigh: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
     this.pool.lighting = lighting;
-    this.solids.isSoft = this.moving.isSoft = lighting === "Soft";
+    this.solids.isSoft = this.movingMeshes.isSoft = lighting === "Soft";
     this.pool.repaint(() => this.styleLinks(rows, isContrastHigh, overrideOf));
-    this.extras.style(rows);
+    this.extras.readProperties(rows);
   }
 
   /** Moves all links to their poses; `isCovered` returns whether another drawing shows a link already. */
@@ -147,7 +147,7 @@ export class RobotDrawing {
     this.extras.updatePoses((name) => this.links.get(name)?.pose ?? null);
   }
 
-  displaceShape(displaced: Displacement["shape"] | null): void {
+  displaceShape(displaced: Displacement["movedShape"] | null): void {
     for (const link of this.links.values()) link.displaceShape(displaced?.link === link.link.name ? displaced : null);
   }
 
@@ -156,25 +156,27 @@ export class RobotDrawing {
     this.solids.chooseDetail(camera);
   }
 
-  /** Draws the meshes of a moving robot with fewer triangles where the difference is not visible; null restores them. */
+  /**
+   * Draws the meshes of a moving robot with fewer triangles where the difference is not visible; null restores them.
+   */
   simplify(view: MovingView | null): void {
-    this.moving.end();
-    const { standIns } = this.meshes;
-    if (!view || !standIns || this.pool.isLit) return;
+    this.movingMeshes.restoreMeshes();
+    const { lodMeshes } = this.meshes;
+    if (!view || !lodMeshes || this.pool.isLit) return;
     const [pieces, meshes]: [MovingPiece[], Mesh[]] = [[], []];
-    const results = [...this.links.values()].map((link) => link.addPieces(standIns, meshes, pieces));
-    if (pieces.length > 0 && results.every((isComplete) => isComplete)) this.moving.begin(pieces, meshes, view);
+    const results = [...this.links.values()].map((link) => link.addPieces(lodMeshes, meshes, pieces));
+    if (pieces.length > 0 && results.every((isComplete) => isComplete)) this.movingMeshes.replaceMeshes(pieces, meshes, view);
   }
 
   pick(ray: Raycaster): Hit | null {
-    this.linkOf.clear();
+    this.linkByMesh.clear();
     const targets = [...this.links.values()].flatMap((link) => {
       const meshes = link.visibleMeshes;
-      for (const mesh of meshes) this.linkOf.set(mesh.id, link.link.name);
+      for (const mesh of meshes) this.linkByMesh.set(mesh.id, link.link.name);
       return meshes;
     });
     const [nearest] = ray.intersectObjects(targets, false);
-    const link = nearest && this.linkOf.get(nearest.object.id);
+    const link = nearest && this.linkByMesh.get(nearest.object.id);
     return nearest && link !== undefined ? { key: link, distance: nearest.distance, point: nearest.point } : null;
   }
 
@@ -203,8 +205,8 @@ export class RobotDrawing {
   /** Returns what is drawn, for tests: the shapes of each link, and the counts of other marks. */
   inspect(): object {
     const links = [...this.links.values()].map((link) => [link.link.name, link.inspect()] as const);
-    const { size: drawnTogether, smallSpheres } = this.solids;
-    return { ...this.extras.counts, drawnTogether, smallSpheres, moving: this.moving.drawnCounts, links: Object.fromEntries(links) };
+    const { size: drawnTogether, smallSphereCount } = this.solids;
+    return { ...this.extras.counts, drawnTogether, smallSpheres: smallSphereCount, moving: this.movingMeshes.drawnCounts, links: Object.fromEntries(links) };
   }
 
   objectsOf(link: string): readonly Object3D[] {
@@ -215,7 +217,7 @@ export class RobotDrawing {
     for (const link of this.links.values()) link.dispose();
     this.extras.dispose();
     this.solids.dispose();
-    this.moving.dispose();
+    this.movingMeshes.dispose();
     this.root.removeFromParent();
     this.pool.dispose();
   }
@@ -244,7 +246,7 @@ export class RobotDrawing {
   private async load(
     link: LinkDrawing,
     shape: ShapeDrawing,
-    report: MeshReport,
+    reportMesh: MeshReport,
     onChanged: () => void,
   ): Promise<void> {
     const { url } = shape.shape;
@@ -256,7 +258,7 @@ export class RobotDrawing {
       error = reason instanceof Error ? reason.message : String(reason);
     }
     this.loadingCount -= 1;
-    if (url !== null) report(link.link.name, url, error);
+    if (url !== null) reportMesh(link.link.name, url, error);
     onChanged();
   }
 }

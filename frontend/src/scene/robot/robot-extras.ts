@@ -6,23 +6,23 @@ import { AxesBatch } from "../objects/axes-batch";
 import { CopyBatch } from "../objects/copy-batch";
 import { createSphere, createCube } from "../objects/geometries";
 
-const AXES_LENGTH = 0.1;
-const AXES_RADIUS = 0.01;
-const AXIS = { shaftLength: 0.15, shaftDiameter: 0.05, headLength: 0.05, headDiameter: 0.08 };
+const AXES_LENGTH_M = 0.1;
+const AXES_RADIUS_M = 0.01;
+const AXIS_ARROW = { shaftLength: 0.15, shaftDiameter: 0.05, headLength: 0.05, headDiameter: 0.08 };
 const AXIS_COLOR = 0x00cc00;
 const MASS_COLOR = 0xff0000;
 /** The density of lead, kg/m3, from which RViz computes the spheres for a link's mass. */
-const DENSITY = 11340;
+const LEAD_DENSITY_KG_PER_M3 = 11340;
 const ONE = new Vector3(1, 1, 1);
 
 /** Returns the pose at which a link is drawn; null until it has a transform. */
-export type LinkPose = (link: string) => Matrix4 | null;
+export type FindLinkPose = (link: string) => Matrix4 | null;
 
 /** What RViz draws in addition to a robot's shapes: axes of links and joints, joint axes, masses and inertias. */
 export class RobotExtras {
   private readonly axes: AxesBatch;
   private readonly arrows: ArrowBatch;
-  private readonly balls: CopyBatch;
+  private readonly spheres: CopyBatch;
   private readonly boxes: CopyBatch;
   private readonly joints: readonly { joint: JointScene; origin: Matrix4 }[];
   private linkAxes: string[] = [];
@@ -35,9 +35,9 @@ export class RobotExtras {
     private readonly scene: Pick<RobotScene, "links" | "joints">,
     parent: Object3D,
   ) {
-    this.axes = new AxesBatch(parent, AXES_LENGTH, AXES_RADIUS);
+    this.axes = new AxesBatch(parent, AXES_LENGTH_M, AXES_RADIUS_M);
     this.arrows = new ArrowBatch(parent);
-    this.balls = new CopyBatch(parent, createSphere(20));
+    this.spheres = new CopyBatch(parent, createSphere(20));
     this.boxes = new CopyBatch(parent, createCube());
     this.joints = scene.joints.map((joint) => ({ joint, origin: createJointOrigin(joint) }));
   }
@@ -47,38 +47,38 @@ export class RobotExtras {
     return {
       axes: this.axes.size,
       jointAxes: this.arrows.size,
-      masses: this.balls.size,
+      masses: this.spheres.size,
       inertias: this.boxes.size,
     };
   }
 
   /** Reads the properties that determine what is drawn. */
-  style(rows: PropertyRows): void {
+  readProperties(rows: PropertyRows): void {
     const links = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const shownLinks = this.scene.links.filter((link) => links.get(link.name)?.value !== false);
     const masses = shownLinks.flatMap((link): [string, LinkInertia][] => (link.inertia ? [[link.name, link.inertia]] : []));
-    this.linkAxes = shownLinks.filter((link) => isOn(links.get(link.name), "Show Axes")).map((link) => link.name);
+    this.linkAxes = shownLinks.filter((link) => isChecked(links.get(link.name), "Show Axes")).map((link) => link.name);
     this.masses = rows.bool(false, "Mass Properties", "Mass") ? masses : [];
     this.inertias = rows.bool(false, "Mass Properties", "Inertia")
       ? masses.filter(([, { box }]) => box.length === 3)
       : [];
     const joints = (rows.find("Joints")?.children ?? []).filter((row) => row.value !== false);
-    this.jointAxes = new Set(joints.filter((row) => isOn(row, "Show Axes")).map((row) => row.name));
-    this.jointArrows = new Set(joints.filter((row) => isOn(row, "Show Joint Axis")).map((row) => row.name));
+    this.jointAxes = new Set(joints.filter((row) => isChecked(row, "Show Axes")).map((row) => row.name));
+    this.jointArrows = new Set(joints.filter((row) => isChecked(row, "Show Joint Axis")).map((row) => row.name));
   }
 
-  updatePoses(poseOf: LinkPose): void {
+  updatePoses(poseOf: FindLinkPose): void {
     this.placeAxes(poseOf);
     const [matrix, size] = [new Matrix4(), new Matrix4()];
-    this.balls.begin(this.masses.length);
+    this.spheres.begin(this.masses.length);
     for (const [link, { mass, center }] of this.masses) {
       const pose = poseOf(link);
       if (!pose || mass <= 0) continue;
-      const diameter = 2 * Math.cbrt((0.75 * mass) / (Math.PI * DENSITY));
+      const diameter = 2 * Math.cbrt((0.75 * mass) / (Math.PI * LEAD_DENSITY_KG_PER_M3));
       matrix.makeTranslation(new Vector3().fromArray(center)).premultiply(pose);
-      this.balls.add(matrix.multiply(size.makeScale(diameter, diameter, diameter)), 0, 1, MASS_COLOR);
+      this.spheres.add(matrix.multiply(size.makeScale(diameter, diameter, diameter)), 0, 1, MASS_COLOR);
     }
-    this.balls.end();
+    this.spheres.end();
     this.boxes.begin(this.inertias.length);
     for (const [link, { center, box, quaternion }] of this.inertias) {
       const pose = poseOf(link);
@@ -91,14 +91,14 @@ export class RobotExtras {
   }
 
   expandBox(box: Box3): void {
-    for (const batch of [this.axes, this.arrows, this.balls, this.boxes]) batch.expandBox(box);
+    for (const batch of [this.axes, this.arrows, this.spheres, this.boxes]) batch.expandBox(box);
   }
 
   dispose(): void {
-    for (const batch of [this.axes, this.arrows, this.balls, this.boxes]) batch.dispose();
+    for (const batch of [this.axes, this.arrows, this.spheres, this.boxes]) batch.dispose();
   }
 
-  private placeAxes(poseOf: LinkPose): void {
+  private placeAxes(poseOf: FindLinkPose): void {
     this.axes.begin(this.linkAxes.length + this.jointAxes.size);
     this.arrows.begin(this.jointArrows.size);
     for (const link of this.linkAxes) {
@@ -113,7 +113,7 @@ export class RobotExtras {
         if (this.jointAxes.has(joint.name)) this.axes.add(matrix.multiplyMatrices(pose, origin));
         if (!this.jointArrows.has(joint.name)) continue;
         poseAlongX(new Vector3(), new Vector3().fromArray(joint.axis), matrix).premultiply(origin).premultiply(pose);
-        this.arrows.add(matrix, AXIS, { color: AXIS_COLOR });
+        this.arrows.add(matrix, AXIS_ARROW, { color: AXIS_COLOR });
       }
     }
     this.axes.end();
@@ -126,6 +126,6 @@ function createJointOrigin({ position, quaternion }: JointScene): Matrix4 {
   return new Matrix4().compose(new Vector3().fromArray(position), new Quaternion().fromArray(quaternion), ONE);
 }
 
-function isOn(row: PropertyNode | undefined, name: string): boolean {
+function isChecked(row: PropertyNode | undefined, name: string): boolean {
   return row?.children.find((child) => child.name === name)?.value === true;
 }

@@ -2,13 +2,13 @@ import { Box3, Color, DoubleSide, Group, Matrix4, Mesh, MeshLambertMaterial, typ
 import type { Shape } from "../../protocol";
 import type { LinkOverride } from "../../state/comparison";
 import { strings } from "../../strings";
-import { PICKABLE } from "../layers";
-import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
+import { PICKABLE_LAYER } from "../layers";
+import { errorMaterial, MIN_OPAQUE_ALPHA, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
 import { quoteNames } from "../meshes/mesh-error";
 import type { MeshLibrary } from "../meshes/mesh-library";
-import type { StandIn } from "../meshes/stand-in";
-import type { StandIns } from "../meshes/stand-ins";
-import { UNCOLORED_GRAY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
+import type { LodMesh } from "../meshes/lod-mesh";
+import type { LodMeshes } from "../meshes/lod-meshes";
+import { UNCOLORED_GRAY, type MeshTemplate, type FileMaterial } from "../meshes/mesh-template";
 import { extrudePolygons, createHeightmap, selectSubmesh } from "../objects/world-geometries";
 import { setPoseMatrix } from "../pose";
 import { createCapsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
@@ -18,9 +18,9 @@ import { solidKindOf, type SolidKind } from "./solids";
 const POSE_TOLERANCE = 1e-6;
 
 /** A part of a shape: its mesh, and the materials from the file. */
-interface Part {
+interface ShapePart {
   mesh: Mesh;
-  ownMaterials: readonly (OwnMaterial | null)[];
+  fileMaterials: readonly (FileMaterial | null)[];
 }
 
 /** A shape that is drawn in a batch instead of as a mesh of its own. */
@@ -34,7 +34,7 @@ export interface Solid {
 
 /** A piece of a shape that may be drawn together with others while the robot moves. */
 export interface ShapePiece {
-  readonly standIn: StandIn;
+  readonly lodMesh: LodMesh;
   /** The matrix from the mesh to the link. */
   readonly matrix: Matrix4;
   /** The color, 0xrrggbb. */
@@ -51,12 +51,12 @@ export interface InspectedShape {
 /** The drawing of one visual or collision of a link. */
 export class ShapeDrawing {
   readonly root = new Group();
-  private parts: Part[] = [];
+  private parts: ShapePart[] = [];
   private texture: Texture | null = null;
   private surface: Surface | null = null;
   private library: MeshLibrary | null = null;
   /** The addresses of the library's textures that this shape uses. */
-  private readonly usedTextures: string[] = [];
+  private readonly usedTextureUrls: string[] = [];
   /** A geometry of its own, which it must dispose of. */
   private ownGeometry: BufferGeometry | null = null;
   private problem: string | null = null;
@@ -100,7 +100,7 @@ export class ShapeDrawing {
     const loadTextureAt = async (address: string | null): Promise<Texture | null> => {
       if (address === null || this.library === null) return null;
       const url = library.files.addressOf(address);
-      this.usedTextures.push(url);
+      this.usedTextureUrls.push(url);
       try {
         return await library.textures.acquire(url);
       } catch {
@@ -120,14 +120,14 @@ export class ShapeDrawing {
   }
 
   /**
-   * Applies materials; `alpha` includes that of the robot and the link, and `isLost` means RViz's white of links without
-   * a transform.
+   * Applies materials; `alpha` includes that of the robot and the link, and `isLost` means RViz's white of links
+   * without a transform.
    *
    * @param override - replaces all colors and textures.
    */
   paint(pool: MaterialPool, alpha: number, isLost: boolean, override: LinkOverride | null = null): void {
-    for (const { mesh, ownMaterials } of this.parts) {
-      const materials = ownMaterials.map((material) => (isLost ? errorMaterial : pool.get(this.lookFor(material, alpha, override))));
+    for (const { mesh, fileMaterials } of this.parts) {
+      const materials = fileMaterials.map((material) => (isLost ? errorMaterial : pool.get(this.createLook(material, alpha, override))));
       const [material = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? material : materials;
     }
@@ -135,30 +135,30 @@ export class ShapeDrawing {
     for (const { mesh } of this.parts) {
       if (this.solidInBatch) {
         mesh.layers.disable(0);
-        mesh.layers.enable(PICKABLE);
+        mesh.layers.enable(PICKABLE_LAYER);
       } else mesh.layers.enable(0);
     }
   }
 
   /**
-   * Adds the meshes that have stand-ins, and the pieces of these stand-ins.
+   * Adds the meshes that have LOD meshes, and the pieces of these LOD meshes.
    *
-   * @returns whether all requested stand-ins are available.
+   * @returns whether all requested LOD meshes are available.
    */
-  addPieces(standIns: StandIns, meshes: Mesh[], pieces: ShapePiece[]): boolean {
+  addPieces(lodMeshes: LodMeshes, meshes: Mesh[], pieces: ShapePiece[]): boolean {
     let isComplete = true;
     if (this.shape.kind !== "mesh") return isComplete;
     for (const { mesh } of this.parts) {
       const materials = [mesh.material].flat();
       if (!materials.every(isPlain)) continue;
-      const levels = standIns.standInsOf(mesh.geometry);
-      isComplete &&= levels !== null;
-      if (!levels || levels.length === 0) continue;
+      const groupMeshes = lodMeshes.getOrRequest(mesh.geometry);
+      isComplete &&= groupMeshes !== null;
+      if (!groupMeshes || groupMeshes.length === 0) continue;
       const matrix = new Matrix4().multiplyMatrices(this.root.matrix, mesh.matrix);
       const { groups } = mesh.geometry;
-      levels.forEach((standIn, i) => {
+      groupMeshes.forEach((lodMesh, i) => {
         const material = materials[groups[i]?.materialIndex ?? 0] ?? materials[0];
-        if (material) pieces.push({ standIn, matrix, color: material.color.getHex() });
+        if (material) pieces.push({ lodMesh, matrix, color: material.color.getHex() });
       });
       meshes.push(mesh);
     }
@@ -203,7 +203,7 @@ export class ShapeDrawing {
   }
 
   dispose(): void {
-    for (const url of this.usedTextures) this.library?.textures.release(url);
+    for (const url of this.usedTextureUrls) this.library?.textures.release(url);
     this.library = null;
     this.ownGeometry?.dispose();
   }
@@ -241,14 +241,14 @@ export class ShapeDrawing {
       case "mesh":
         break;
     }
-    this.freeze();
+    this.updateMatrices();
   }
 
   /** Builds a part with a geometry that no other shape shares. */
   private buildPart(geometry: BufferGeometry): void {
     this.addPart(geometry, [null]);
     this.ownGeometry = geometry;
-    this.freeze();
+    this.updateMatrices();
   }
 
   private buildMesh(template: MeshTemplate): void {
@@ -260,12 +260,12 @@ export class ShapeDrawing {
       mesh.position.copy(offset).multiply(mesh.scale);
     }
     this.problem = template.problem;
-    this.freeze();
+    this.updateMatrices();
   }
 
-  private addPart(geometry: BufferGeometry, ownMaterials: readonly (OwnMaterial | null)[]): Mesh {
+  private addPart(geometry: BufferGeometry, fileMaterials: readonly (FileMaterial | null)[]): Mesh {
     const mesh = new Mesh<BufferGeometry, Material | Material[]>(geometry, errorMaterial);
-    this.parts.push({ mesh, ownMaterials });
+    this.parts.push({ mesh, fileMaterials });
     this.root.add(mesh);
     return mesh;
   }
@@ -273,8 +273,8 @@ export class ShapeDrawing {
   private createSolid(override: LinkOverride | null, alpha: number): Solid | null {
     const kind = solidKindOf(this.shape.kind);
     const [part] = this.parts;
-    const look = this.lookFor(null, alpha, override);
-    if (kind === null || !part || look.map || look.alpha < OPAQUE_FROM) return null;
+    const look = this.createLook(null, alpha, override);
+    if (kind === null || !part || look.map || look.alpha < MIN_OPAQUE_ALPHA) return null;
     return {
       kind,
       matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix),
@@ -282,7 +282,7 @@ export class ShapeDrawing {
     };
   }
 
-  private freeze(): void {
+  private updateMatrices(): void {
     for (const { mesh } of this.parts) {
       mesh.updateMatrix();
       mesh.matrixAutoUpdate = false;
@@ -294,19 +294,19 @@ export class ShapeDrawing {
    * one, a primitive or STL is RViz's red, and another mesh the gray that RViz's mesh reader sets. Only the URDF sets
    * the opacity of a part: RViz does not read it from mesh files, where exporters often write it wrongly.
    */
-  private lookFor(ownMaterials: OwnMaterial | null, alpha: number, override: LinkOverride | null): Look {
+  private createLook(fileMaterial: FileMaterial | null, alpha: number, override: LinkOverride | null): Look {
     if (override) return { color: override.color, map: null, hasVertexColors: false, alpha, isDoubleSided: true, isBehind: override.isBehind === true };
     const { kind, repaints } = this.shape;
     const isDoubleSided = kind === "mesh";
     const isBehind = kind === "plane";
-    if (ownMaterials && !repaints) {
-      const { color, map, vertexColors: hasVertexColors, surface } = ownMaterials;
+    if (fileMaterial && !repaints) {
+      const { color, map, vertexColors: hasVertexColors, surface } = fileMaterial;
       return { color, map, hasVertexColors, surface: surface ?? null, alpha: alpha * (this.shape.color?.[3] ?? 1), isDoubleSided };
     }
     const isGray = isDoubleSided && !this.shape.format?.startsWith("stl");
-    const bare: readonly number[] = isGray ? [UNCOLORED_GRAY, UNCOLORED_GRAY, UNCOLORED_GRAY] : RVIZ_RED;
+    const defaultColor: readonly number[] = isGray ? [UNCOLORED_GRAY, UNCOLORED_GRAY, UNCOLORED_GRAY] : RVIZ_RED;
     // A texture replaces the color.
-    const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? bare);
+    const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? defaultColor);
     return { color: [r, g, b], map: this.texture, hasVertexColors: false, alpha: alpha * a, isDoubleSided, isBehind, surface: this.surface };
   }
 }

@@ -16,10 +16,10 @@ export function solidKindOf(kind: string): SolidKind | null {
 }
 
 /** Up to this share of the height of the image, a sphere looks round with few vertices. */
-const SMALL_SHARE = 0.06;
+const MAX_SMALL_SHARE = 0.06;
 
 /** A sphere to draw, as the matrix that maps the unit sphere to it. */
-interface Sphere {
+interface SphereCopy {
   readonly matrix: Matrix4;
   readonly color: number;
   isSmall: boolean;
@@ -27,13 +27,13 @@ interface Sphere {
 
 /**
  * Draws opaque boxes, cylinders, cones, spheres and planes. Call `begin`, `add` and `end` as with `CopyBatch`, and
- * `chooseDetail` before each frame. Spheres have ten times the vertices of the others, which without a GPU took two fifths of
- * the time of a frame: those that look small are drawn with fewer.
+ * `chooseDetail` before each frame. Spheres have ten times the vertices of the others, which without a GPU took two
+ * fifths of the time of a frame: those that look small are drawn with fewer.
  */
 export class Solids {
   private readonly batches: ReadonlyMap<SolidKind, CopyBatch>;
   private readonly smallBatch: CopyBatch;
-  private spheres: Sphere[] = [];
+  private spheres: SphereCopy[] = [];
   private isStale = false;
   private readonly softness = { value: false };
 
@@ -59,7 +59,7 @@ export class Solids {
   }
 
   /** The number of spheres drawn with few vertices. */
-  get smallSpheres(): number {
+  get smallSphereCount(): number {
     return this.smallBatch.size;
   }
 
@@ -84,7 +84,7 @@ export class Solids {
   chooseDetail(camera: Camera): void {
     let hasChanged = this.isStale;
     for (const sphere of this.spheres) {
-      const isSmall = shareOf(sphere.matrix, camera) < SMALL_SHARE;
+      const isSmall = computeImageShare(sphere.matrix, camera) < MAX_SMALL_SHARE;
       hasChanged ||= isSmall !== sphere.isSmall;
       sphere.isSmall = isSmall;
     }
@@ -111,7 +111,7 @@ export class Solids {
  * Returns the radius of a sphere in an image as a share of the image's height; infinite if the camera is inside it or
  * level with it.
  */
-function shareOf(matrix: Matrix4, camera: Camera): number {
+function computeImageShare(matrix: Matrix4, camera: Camera): number {
   const radius = matrix.getMaxScaleOnAxis();
   const { elements } = camera.projectionMatrix;
   const depth = -position.setFromMatrixPosition(matrix).applyMatrix4(camera.matrixWorldInverse).z;

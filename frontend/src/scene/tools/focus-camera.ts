@@ -1,5 +1,5 @@
 import { strings } from "../../strings";
-import { pointText } from "./point-text";
+import { formatPoint } from "./point-text";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
 /** RViz's Focus Camera: a click looks at the point under the pointer, or in its direction if there is none. */
@@ -16,7 +16,7 @@ export class FocusCameraTool implements SceneTool {
     const { stage, session } = this.context;
     const point = stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
-    this.context.setHint(point ? strings.tools.hints.focus(pointText(point)) : strings.tools.hints.focusNowhere);
+    this.context.setHint(point ? strings.tools.hints.focus(formatPoint(point)) : strings.tools.hints.focusNowhere);
     if (event.type !== "up" || event.button !== "left") return;
     const { origin, direction } = stage.picker.rayAt(event.x, event.y).ray;
     const target = origin.clone().add(direction);

@@ -8,7 +8,7 @@ import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
 const DARK_YELLOW = "#808000";
 /** The height of the label, CSS pixels. */
-const LABEL_PX = 20;
+const LABEL_HEIGHT_PX = 20;
 
 /**
  * RViz's Measure: the distance between two clicked points, which is also shown at the middle of the line; a right click
@@ -42,7 +42,7 @@ export class MeasureTool implements SceneTool {
     const point = this.context.stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
     if (this.isMeasuring && point) this.draw(point);
-    if (event.type === "up" && event.button === "left") this.onRelease(point, event.click);
+    if (event.type === "up" && event.button === "left") this.onRelease(point, event.isClick);
     if (event.type === "up" && event.button === "right") this.clear();
     this.showLength();
   }
@@ -111,8 +111,8 @@ export class MeasureTool implements SceneTool {
     if (text !== "" && start && end) {
       const center = new Vector3(...start).add(new Vector3(...end)).multiplyScalar(0.5);
       const { session, stage } = this.context;
-      const pixel = computePixelSize(session.view.camera, center.toArray(), stage.viewport.size);
-      this.label.add(text, center, LABEL_PX * pixel, 0, 1);
+      const pixelSize = computePixelSize(session.view.camera, center.toArray(), stage.viewport.size);
+      this.label.add(text, center, LABEL_HEIGHT_PX * pixelSize, 0, 1);
     }
     this.label.end();
   }

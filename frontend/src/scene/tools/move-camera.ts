@@ -26,8 +26,8 @@ export class MoveCameraTool implements SceneTool {
   onPointer(event: ToolEvent): void {
     const { stage, session } = this.context;
     const { view } = session;
-    const isHeld = event.left || event.middle || event.right;
-    this.showHint(event.shift);
+    const isHeld = event.isLeftDown || event.isMiddleDown || event.isRightDown;
+    this.showHint(event.isShiftDown);
     this.context.setCursor(isHeld ? CURSORS[view.controller.motionOf(event)] : "default");
     switch (event.type) {
       case "move":
@@ -36,11 +36,11 @@ export class MoveCameraTool implements SceneTool {
         view.drag({ ...event, ...stage.viewport.size, x: event.x - event.dx, y: event.y - event.dy });
         return;
       case "wheel":
-        view.wheel(event.wheel, event.shift);
+        view.handleWheel(event.wheel, event.isShiftDown);
         return;
       case "up":
         if (!isHeld) stage.isFocalShapeVisible = false;
-        if (event.click && event.button === "left" && !event.shift) stage.picker.selectAt(event.x, event.y);
+        if (event.isClick && event.button === "left" && !event.isShiftDown) stage.picker.selectAt(event.x, event.y);
         return;
       case "down":
       case "leave":

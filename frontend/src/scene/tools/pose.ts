@@ -4,7 +4,7 @@ import type { Vector } from "../../state/views/vector";
 import { ArrowBatch, type ArrowShape } from "../objects/arrow-batch";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
-const ARROW: ArrowShape = { shaftLength: 2, shaftDiameter: 0.2, headLength: 0.5, headDiameter: 0.35 };
+const POSE_ARROW: ArrowShape = { shaftLength: 2, shaftDiameter: 0.2, headLength: 0.5, headDiameter: 0.35 };
 const GREEN = 0x00ff00;
 
 /**
@@ -36,7 +36,7 @@ export class PoseTool implements SceneTool {
     if (event.type === "down" && event.button === "left") {
       this.position = picker.groundAt(event.x, event.y);
       this.yaw = 0;
-    } else if (event.type === "move" && event.left && this.position) {
+    } else if (event.type === "move" && event.isLeftDown && this.position) {
       const target = picker.groundAt(event.x, event.y);
       if (target) this.aim(this.position, target);
     } else if (event.type === "up" && event.button === "left" && this.position) {
@@ -56,7 +56,7 @@ export class PoseTool implements SceneTool {
   private aim(start: Vector, target: Vector): void {
     this.yaw = Math.atan2(target[1] - start[1], target[0] - start[0]);
     this.arrow.begin(1);
-    this.arrow.add(new Matrix4().makeRotationZ(this.yaw).setPosition(...start), ARROW, { color: GREEN });
+    this.arrow.add(new Matrix4().makeRotationZ(this.yaw).setPosition(...start), POSE_ARROW, { color: GREEN });
     this.arrow.end();
     this.context.stage.loop.invalidate();
   }

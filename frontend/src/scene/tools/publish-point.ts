@@ -1,5 +1,5 @@
 import { strings } from "../../strings";
-import { pointText } from "./point-text";
+import { formatPoint } from "./point-text";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
 /** RViz's Publish Point: publishes the clicked point of an object. */
@@ -16,9 +16,9 @@ export class PublishPointTool implements SceneTool {
     const { stage, session, state } = this.context;
     const point = stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
-    this.context.setHint(point ? strings.tools.hints.point(pointText(point)) : strings.tools.hints.pointNowhere);
+    this.context.setHint(point ? strings.tools.hints.point(formatPoint(point)) : strings.tools.hints.pointNowhere);
     if (event.type !== "up" || event.button !== "left") return;
-    if (!point && event.click) this.context.showNotice(strings.tools.hints.nothingThere);
+    if (!point && event.isClick) this.context.showNotice(strings.tools.hints.nothingThere);
     if (!point || !state) return;
     const [x, y, z] = point;
     session.connection.send({ type: "point_chosen", tool: state.id, x, y, z });

@@ -10,13 +10,13 @@ import type { SceneTool, ToolContext, ToolEvent } from "./tool";
  */
 export class SelectTool implements SceneTool {
   readonly grabsKeys = true;
-  private readonly camera: MoveCameraTool;
-  private readonly band = h("div", { class: "rubber-band" });
-  private start: Vector2 | null = null;
+  private readonly cameraTool: MoveCameraTool;
+  private readonly rubberBand = h("div", { class: "rubber-band" });
+  private dragStart: Vector2 | null = null;
   private isMovingCamera = false;
 
   constructor(private readonly context: ToolContext) {
-    this.camera = new MoveCameraTool(context);
+    this.cameraTool = new MoveCameraTool(context);
   }
 
   activate(): void {
@@ -26,26 +26,26 @@ export class SelectTool implements SceneTool {
 
   deactivate(): void {
     this.endDrag();
-    this.camera.deactivate();
+    this.cameraTool.deactivate();
   }
 
   onPointer(event: ToolEvent): void {
-    if (event.type === "down") this.isMovingCamera = event.alt;
+    if (event.type === "down") this.isMovingCamera = event.isAltDown;
     if (this.isMovingCamera || event.type === "wheel") {
-      this.camera.onPointer({ ...event, click: false });
+      this.cameraTool.onPointer({ ...event, isClick: false });
       this.context.setHint(strings.tools.hints.select);
       return;
     }
     const { stage } = this.context;
     const pointer = new Vector2(event.x, event.y);
     if (event.type === "down" && event.button === "left") {
-      this.start = pointer;
-    } else if (event.type === "move" && this.start && event.left) {
-      this.draw(this.start, pointer);
-    } else if (event.type === "up" && event.button === "left" && this.start) {
-      const mode: SelectionMode = event.shift ? "add" : event.ctrl ? "remove" : "replace";
-      if (event.click) stage.picker.selectAt(event.x, event.y, mode);
-      else stage.picker.selectBox(this.start, pointer, mode);
+      this.dragStart = pointer;
+    } else if (event.type === "move" && this.dragStart && event.isLeftDown) {
+      this.draw(this.dragStart, pointer);
+    } else if (event.type === "up" && event.button === "left" && this.dragStart) {
+      const mode: SelectionMode = event.isShiftDown ? "add" : event.isCtrlDown ? "remove" : "replace";
+      if (event.isClick) stage.picker.selectAt(event.x, event.y, mode);
+      else stage.picker.selectBox(this.dragStart, pointer, mode);
       this.endDrag();
     }
   }
@@ -59,17 +59,17 @@ export class SelectTool implements SceneTool {
     this.endDrag();
   }
 
-  private draw(a: Vector2, b: Vector2): void {
-    const { style } = this.band;
-    style.left = `${Math.min(a.x, b.x)}px`;
-    style.top = `${Math.min(a.y, b.y)}px`;
-    style.width = `${Math.abs(a.x - b.x)}px`;
-    style.height = `${Math.abs(a.y - b.y)}px`;
-    this.context.stage.viewport.container.append(this.band);
+  private draw(start: Vector2, end: Vector2): void {
+    const { style } = this.rubberBand;
+    style.left = `${Math.min(start.x, end.x)}px`;
+    style.top = `${Math.min(start.y, end.y)}px`;
+    style.width = `${Math.abs(start.x - end.x)}px`;
+    style.height = `${Math.abs(start.y - end.y)}px`;
+    this.context.stage.viewport.container.append(this.rubberBand);
   }
 
   private endDrag(): void {
-    this.start = null;
-    this.band.remove();
+    this.dragStart = null;
+    this.rubberBand.remove();
   }
 }

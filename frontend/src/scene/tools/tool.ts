@@ -16,14 +16,14 @@ export interface ToolEvent {
   readonly wheel: number;
   /** The button that was pressed or released. */
   readonly button: PointerButton | null;
-  readonly left: boolean;
-  readonly middle: boolean;
-  readonly right: boolean;
-  readonly shift: boolean;
-  readonly ctrl: boolean;
-  readonly alt: boolean;
+  readonly isLeftDown: boolean;
+  readonly isMiddleDown: boolean;
+  readonly isRightDown: boolean;
+  readonly isShiftDown: boolean;
+  readonly isCtrlDown: boolean;
+  readonly isAltDown: boolean;
   /** For `up`: whether the pointer hardly moved since the button was pressed. */
-  readonly click: boolean;
+  readonly isClick: boolean;
 }
 
 /** The objects that a tool uses. */

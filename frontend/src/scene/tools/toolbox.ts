@@ -9,7 +9,7 @@ import type { SceneTool, ToolContext } from "./tool";
 export class Toolbox {
   private readonly tools = new Map<string, { state: ToolState; tool: SceneTool }>();
   /** The tool that is active while the toolbar has none. */
-  private readonly fallback: SceneTool;
+  private readonly fallbackTool: SceneTool;
   private activeTool: SceneTool;
 
   constructor(
@@ -17,8 +17,8 @@ export class Toolbox {
     private readonly session: Session,
   ) {
     const { tools, view } = session;
-    this.fallback = this.activeTool = new MoveCameraTool(this.createContext(null));
-    this.fallback.activate?.();
+    this.fallbackTool = this.activeTool = new MoveCameraTool(this.createContext(null));
+    this.fallbackTool.activate?.();
     tools.currentChanged.on((state) => this.activate(state));
     tools.valueChanged.on((state) => this.tools.get(state.id)?.tool.onSettingsChanged?.());
     // In another class of view the mouse works differently: update the tool's hint.
@@ -37,18 +37,18 @@ export class Toolbox {
 
   private activate(state: ToolState | null): void {
     this.disposeRemoved();
-    const next = state ? this.toolOf(state) : this.fallback;
-    if (next === this.activeTool) return;
+    const newTool = state ? this.findOrCreateTool(state) : this.fallbackTool;
+    if (newTool === this.activeTool) return;
     this.activeTool.deactivate?.();
-    this.activeTool = next;
-    next.activate?.();
+    this.activeTool = newTool;
+    newTool.activate?.();
   }
 
-  private toolOf(state: ToolState): SceneTool {
+  private findOrCreateTool(state: ToolState): SceneTool {
     const existing = this.tools.get(state.id);
     if (existing) return existing.tool;
-    const Tool = TOOLS.get(state.cls)?.make;
-    const tool = Tool ? new Tool(this.createContext(state)) : this.fallback;
+    const Tool = TOOLS.get(state.cls)?.toolClass;
+    const tool = Tool ? new Tool(this.createContext(state)) : this.fallbackTool;
     this.tools.set(state.id, { state, tool });
     return tool;
   }
@@ -60,7 +60,7 @@ export class Toolbox {
       if (tools.includes(state)) continue;
       if (tool === this.activeTool) {
         tool.deactivate?.();
-        this.activeTool = this.fallback;
+        this.activeTool = this.fallbackTool;
       }
       tool.dispose?.();
       this.tools.delete(id);
@@ -81,7 +81,7 @@ export class Toolbox {
       setCursor: (cursor) => {
         stage.viewport.canvas.style.cursor = cursor;
       },
-      finish: () => tools.choose(tools.default),
+      finish: () => tools.activate(tools.default),
     };
   }
 }

@@ -25,7 +25,7 @@ export type HandleMode = "translate" | "rotate";
 /** The frame along whose axes the handles are oriented. */
 export type HandleFrame = "parent" | "own";
 
-const SNAPPING = "linkwright.editing-snapping";
+const SNAPPING_STORAGE_KEY = "linkwright.editing-snapping";
 /** The preview is requested this time after the last change, ms. */
 const PREVIEW_DELAY_MS = 120;
 const MIN_CHANGE = 1e-9;
@@ -50,9 +50,9 @@ export class EditingState {
   isWrittenToText = false;
   private canUndoWritten = false;
   private canRedoWritten = false;
-  private text: TextHistory | null = null;
+  private textHistory: TextHistory | null = null;
   private link: { display: string; link: string } | null = null;
-  private editable: EditableParts | null = null;
+  private editableParts: EditableParts | null = null;
   private part: EditablePart | null = null;
   private currentDraft: Draft | null = null;
   /** Whether the draft was written, but the resulting robot has not arrived yet. */
@@ -60,7 +60,7 @@ export class EditingState {
   private previewNumber = 0;
   private changesAll = false;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private holders = 0;
+  private holderCount = 0;
   private handleMode: HandleMode = "translate";
   private handleFrame: HandleFrame = "parent";
 
@@ -68,7 +68,7 @@ export class EditingState {
     private readonly connection: Connection,
     storage: TextStorage,
   ) {
-    this.snapping = new Snapping(storage, SNAPPING, { on: false, length: 0.01 });
+    this.snapping = new Snapping(storage, SNAPPING_STORAGE_KEY, { on: false, length: 0.01 });
     connection.on("editable_parts", (message) => this.setParts(message));
     connection.on("edit_preview", (message) => {
       if (message.number !== this.previewNumber) return;
@@ -92,38 +92,38 @@ export class EditingState {
       if (this.isActive && display === this.link?.display) this.requestParts();
     });
     connection.on("robot_scene", ({ display }) => {
-      if (display === this.link?.display && this.isWritten) this.reset();
+      if (display === this.link?.display && this.isWritten) this.discardDraft();
     });
   }
 
   /** Whether there is an edit to undo: in an unsaved text, or else one that was written. */
   get canUndo(): boolean {
-    return this.text?.canUndo ?? this.canUndoWritten;
+    return this.textHistory?.canUndo ?? this.canUndoWritten;
   }
 
   get canRedo(): boolean {
-    return this.text?.canRedo ?? this.canRedoWritten;
+    return this.textHistory?.canRedo ?? this.canRedoWritten;
   }
 
   /** Takes over the history of the unsaved text of the editor of source files; null if all texts are saved. */
-  setTextHistory(text: TextHistory | null): void {
+  setTextHistory(textHistory: TextHistory | null): void {
     const previous = [this.canUndo, this.canRedo];
-    this.text = text;
+    this.textHistory = textHistory;
     if (previous[0] !== this.canUndo || previous[1] !== this.canRedo) this.changed.emit();
   }
 
   /** Whether editing is active. */
   get isActive(): boolean {
-    return this.holders > 0;
+    return this.holderCount > 0;
   }
 
   get parts(): readonly EditablePart[] {
-    return this.editable?.parts ?? [];
+    return this.editableParts?.parts ?? [];
   }
 
   /** Why nothing can be edited; empty if editing is possible. */
   get unavailableReason(): string {
-    return this.editable?.refusal_reason ?? "";
+    return this.editableParts?.refusal_reason ?? "";
   }
 
   get current(): { display: string; link: string } | null {
@@ -140,12 +140,12 @@ export class EditingState {
   }
 
   /** Whether the draft is neither written nor discarded. */
-  get isOpen(): boolean {
+  get isDraftOpen(): boolean {
     return this.currentDraft !== null && !this.isWritten;
   }
 
   /** Whether the edit may change all elements that result from the same text. */
-  get isChangeOfAll(): boolean {
+  get isForAllElements(): boolean {
     return this.changesAll;
   }
 
@@ -170,42 +170,42 @@ export class EditingState {
   }
 
   /** Activates editing until the returned function is called. */
-  hold(): () => void {
-    this.holders += 1;
+  activate(): () => void {
+    this.holderCount += 1;
     this.activeChanged.emit();
     this.requestParts();
     this.draftChanged.emit();
-    let isDone = false;
+    let isReleased = false;
     return () => {
-      if (!isDone) this.holders -= 1;
-      isDone = true;
-      if (!this.isActive) this.reset();
+      if (!isReleased) this.holderCount -= 1;
+      isReleased = true;
+      if (!this.isActive) this.discardDraft();
       this.activeChanged.emit();
     };
   }
 
   /** Edits the parts of the link that the user selected; null for none. */
-  follow(link: { display: string; link: string } | null): void {
+  setLink(link: { display: string; link: string } | null): void {
     if (link?.display === this.link?.display && link?.link === this.link?.link) return;
     this.link = link;
-    this.editable = this.part = null;
+    this.editableParts = this.part = null;
     this.writtenFiles = [];
-    this.reset();
+    this.discardDraft();
     this.requestParts();
   }
 
-  choose(part: EditablePart): void {
-    if (isSame(part, this.part)) return;
+  choosePart(part: EditablePart): void {
+    if (isSamePart(part, this.part)) return;
     this.part = part;
     this.writtenFiles = [];
-    this.reset();
+    this.discardDraft();
   }
 
   /** Sets the requested values of the chosen part; the preview is requested once the pointer rests. */
-  move(draft: Draft): void {
+  setDraft(draft: Draft): void {
     const { part } = this;
     if (!part || this.unavailableReason !== "") return;
-    const isUnmoved = areEqual(draft.xyz, part.xyz) && areEqual(draft.rpy, part.rpy);
+    const isUnmoved = areNearlyEqual(draft.xyz, part.xyz) && areNearlyEqual(draft.rpy, part.rpy);
     this.currentDraft = isUnmoved ? null : draft;
     this.isWritten = this.changesAll = false;
     this.writtenFiles = [];
@@ -227,19 +227,19 @@ export class EditingState {
   }
 
   undo(): void {
-    this.reset();
-    if (this.text) this.text.undo();
+    this.discardDraft();
+    if (this.textHistory) this.textHistory.undo();
     else this.connection.send({ type: "undo_edit" });
   }
 
   redo(): void {
-    this.reset();
-    if (this.text) this.text.redo();
+    this.discardDraft();
+    if (this.textHistory) this.textHistory.redo();
     else this.connection.send({ type: "redo_edit" });
   }
 
   /** Discards the draft. */
-  reset(): void {
+  discardDraft(): void {
     this.currentDraft = null;
     this.isWritten = this.changesAll = false;
     this.cancelPreview();
@@ -263,8 +263,8 @@ export class EditingState {
     this.previewNumber += 1;
     this.preview = null;
     const { name, index } = part;
-    const xyz = areEqual(currentDraft.xyz, part.xyz) ? null : [...currentDraft.xyz];
-    const rpy = areEqual(currentDraft.rpy, part.rpy) ? null : [...currentDraft.rpy];
+    const xyz = areNearlyEqual(currentDraft.xyz, part.xyz) ? null : [...currentDraft.xyz];
+    const rpy = areNearlyEqual(currentDraft.rpy, part.rpy) ? null : [...currentDraft.rpy];
     const { previewNumber: number, changesAll } = this;
     this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together: changesAll });
   }
@@ -275,21 +275,26 @@ export class EditingState {
    */
   private setParts(message: EditableParts): void {
     if (message.display !== this.link?.display || message.link !== this.link.link) return;
-    this.editable = message;
+    this.editableParts = message;
     const previousPart = this.part;
-    this.part = message.parts.find((part) => isSame(part, previousPart)) ?? message.parts[0] ?? null;
-    const stays = previousPart && this.part && isSame(previousPart, this.part) && areEqual(previousPart.xyz, this.part.xyz) && areEqual(previousPart.rpy, this.part.rpy);
-    if (!stays) this.reset();
-    else if (this.isOpen) this.requestPreview();
+    this.part = message.parts.find((part) => isSamePart(part, previousPart)) ?? message.parts[0] ?? null;
+    const keepsDraft =
+      previousPart &&
+      this.part &&
+      isSamePart(previousPart, this.part) &&
+      areNearlyEqual(previousPart.xyz, this.part.xyz) &&
+      areNearlyEqual(previousPart.rpy, this.part.rpy);
+    if (!keepsDraft) this.discardDraft();
+    else if (this.isDraftOpen) this.requestPreview();
     this.changed.emit();
     this.draftChanged.emit();
   }
 }
 
-function isSame(first: EditablePart, second: EditablePart | null): boolean {
+function isSamePart(first: EditablePart, second: EditablePart | null): boolean {
   return second !== null && first.part === second.part && first.name === second.name && first.index === second.index;
 }
 
-function areEqual(first: readonly number[], second: readonly number[]): boolean {
+function areNearlyEqual(first: readonly number[], second: readonly number[]): boolean {
   return first.length === second.length && first.every((value, i) => Math.abs(value - (second[i] ?? NaN)) < MIN_CHANGE);
 }

@@ -2,7 +2,7 @@
 export type Quaternion = readonly [number, number, number, number];
 
 /** Below this, the cosine of pitch counts as 0, and only the sum or difference of roll and yaw matters. */
-const GIMBAL_LOCK = 1e-7;
+const GIMBAL_LOCK_COSINE = 1e-7;
 
 /** Returns the rotation of roll, pitch and yaw (rad) about the fixed axes, as in URDF. */
 export function quaternionOf([roll = 0, pitch = 0, yaw = 0]: readonly number[]): Quaternion {
@@ -17,15 +17,17 @@ export function findNearestRpy([x, y, z, w]: Quaternion, reference: readonly num
   const [nearRoll = 0, nearPitch = 0, nearYaw = 0] = reference;
   const cosPitchCosYaw = 1 - 2 * (y * y + z * z);
   const cosPitchSinYaw = 2 * (x * y + z * w);
-  const level = Math.hypot(cosPitchCosYaw, cosPitchSinYaw);
-  const pitch = Math.atan2(-2 * (x * z - y * w), level);
-  if (level < GIMBAL_LOCK) {
+  const cosPitch = Math.hypot(cosPitchCosYaw, cosPitchSinYaw);
+  const pitch = Math.atan2(-2 * (x * z - y * w), cosPitch);
+  if (cosPitch < GIMBAL_LOCK_COSINE) {
     const yaw = Math.atan2(-2 * (x * y - z * w), 1 - 2 * (x * x + z * z));
     return [nearRoll, findNearestAngle(pitch, nearPitch), findNearestAngle(pitch > 0 ? yaw + nearRoll : yaw - nearRoll, nearYaw)];
   }
   const roll = Math.atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y));
   const yaw = Math.atan2(cosPitchSinYaw, cosPitchCosYaw);
-  const normalizeNearest = ([r, p, h]: readonly [number, number, number]): [number, number, number] => [findNearestAngle(r, nearRoll), findNearestAngle(p, nearPitch), findNearestAngle(h, nearYaw)];
+  const normalizeNearest = ([roll, pitch, yaw]: readonly [number, number, number]): [number, number, number] => {
+    return [findNearestAngle(roll, nearRoll), findNearestAngle(pitch, nearPitch), findNearestAngle(yaw, nearYaw)];
+  };
   const [first, second] = [normalizeNearest([roll, pitch, yaw]), normalizeNearest([roll + Math.PI, Math.PI - pitch, yaw + Math.PI])];
   const computeDistance = (rpy: readonly number[]): number => rpy.reduce((sum, angle, i) => sum + Math.abs(angle - (reference[i] ?? 0)), 0);
   return computeDistance(second) < computeDistance(first) - 1e-9 ? second : first;

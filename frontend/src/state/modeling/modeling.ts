@@ -20,7 +20,7 @@ export interface Drop {
   readonly position: { readonly x: number; readonly y: number } | null;
 }
 
-const NOTHING: Omit<ModelingState, "type"> = {
+const NO_WORLD: Omit<ModelingState, "type"> = {
   available: false,
   active: false,
   file: null,
@@ -30,7 +30,7 @@ const NOTHING: Omit<ModelingState, "type"> = {
   entities: [],
 };
 /** The minimum distance between a copy and its original, m. */
-const MIN_OFFSET = 0.5;
+const MIN_COPY_OFFSET_M = 0.5;
 
 /** Modeling of the world: the state of its file from the server, and this page's selection and tool. */
 export class Modeling {
@@ -44,9 +44,9 @@ export class Modeling {
   /** An entity was dropped onto the scene; see `takeDrop`. */
   readonly dropped = new Signal();
   readonly snapping: Snapping;
-  private world = NOTHING;
+  private world = NO_WORLD;
   private names: readonly string[] = [];
-  private mode: GizmoMode = "translate";
+  private gizmoMode: GizmoMode = "translate";
   private chosenPlacing: Placing | null = null;
   private lastDrop: Drop | null = null;
   private clipboard: readonly string[] = [];
@@ -103,12 +103,12 @@ export class Modeling {
   }
 
   get gizmo(): GizmoMode {
-    return this.mode;
+    return this.gizmoMode;
   }
 
   set gizmo(mode: GizmoMode) {
-    if (mode === this.mode) return;
-    this.mode = mode;
+    if (mode === this.gizmoMode) return;
+    this.gizmoMode = mode;
     this.toolChanged.emit();
   }
 
@@ -174,8 +174,8 @@ export class Modeling {
   change(changes: readonly Change[]): void {
     if (changes.length === 0) return;
     if (changes.some(({ new_name }) => typeof new_name === "string")) this.selectsNew = true;
-    const stays = { pose: null, size: null, new_name: null, static: null, color: null };
-    this.connection.send({ type: "change_entities", changes: changes.map((change) => ({ ...stays, ...change })) });
+    const unchangedFields = { pose: null, size: null, new_name: null, static: null, color: null };
+    this.connection.send({ type: "change_entities", changes: changes.map((change) => ({ ...unchangedFields, ...change })) });
   }
 
   copy(): void {
@@ -228,20 +228,20 @@ export class Modeling {
   private sendCopies(names: readonly string[]): void {
     if (names.length === 0) return;
     this.selectsNew = true;
-    const step = Math.max(MIN_OFFSET, this.snapping.meters);
-    this.connection.send({ type: "copy_entities", names: [...names], offset: [step, step, 0] });
+    const offset = Math.max(MIN_COPY_OFFSET_M, this.snapping.meters);
+    this.connection.send({ type: "copy_entities", names: [...names], offset: [offset, offset, 0] });
   }
 
   private setState(state: ModelingState): void {
     const previousNames = new Set(this.world.entities.map(({ name }) => name));
     this.world = state;
-    const news = state.entities.map(({ name }) => name).filter((name) => !previousNames.has(name));
+    const newNames = state.entities.map(({ name }) => name).filter((name) => !previousNames.has(name));
     const remainingNames = state.active ? this.names.filter((name) => this.find(name)) : [];
     if (!state.active && this.chosenPlacing) this.startPlacing(null);
     this.changed.emit();
-    if (this.selectsNew && news.length > 0) {
+    if (this.selectsNew && newNames.length > 0) {
       this.selectsNew = false;
-      this.setSelection(news);
+      this.setSelection(newNames);
     } else if (remainingNames.length < this.names.length) this.setSelection(remainingNames);
   }
 

@@ -4,26 +4,26 @@ import { snap } from "./snapping";
 export type NewKind = AddEntity["shape"];
 export type Shape = NonNullable<WorldEntity["shape"]>;
 /** A position on the ground: x and y in the world, m. */
-export type Place = readonly [number, number];
+export type GroundPosition = readonly [number, number];
 
 /** A change of an entity; omitted properties stay. */
 export type Change = Pick<EntityChange, "name"> & Partial<EntityChange>;
 
 /** The thickness and height of new walls, m. */
-const THICKNESS = 0.1;
-const HEIGHT = 1;
+const WALL_THICKNESS_M = 0.1;
+const WALL_HEIGHT_M = 1;
 /** The minimum size, m. */
-export const MIN_SIZE = 0.001;
+export const MIN_SIZE_M = 0.001;
 
 /** The sizes of new entities, m, as on the server: x y z; radius and length of a cylinder; radius of a sphere. */
-const SIZES: Readonly<Partial<Record<NewKind, readonly number[]>>> = {
+const DEFAULT_SIZES_M: Readonly<Partial<Record<NewKind, readonly number[]>>> = {
   box: [0.5, 0.5, 0.5],
   cylinder: [0.25, 0.5],
   sphere: [0.25],
   ramp: [1, 0.5, 0.25],
 };
 /** The height of new lights, m. */
-const LIGHT_HEIGHTS: Readonly<Partial<Record<NewKind, number>>> = { point_light: 2, spot_light: 2, directional_light: 5 };
+const LIGHT_HEIGHTS_M: Readonly<Partial<Record<NewKind, number>>> = { point_light: 2, spot_light: 2, directional_light: 5 };
 
 /** The pose of an entity in the world, and its size. */
 export interface Placement {
@@ -32,18 +32,18 @@ export interface Placement {
 }
 
 /** Returns the placement of a new entity on the ground. */
-export function placementAt(kind: NewKind, [x, y]: Place): Placement {
-  const size = SIZES[kind] ?? [];
-  const z = LIGHT_HEIGHTS[kind] ?? (isShape(kind) ? computeRestingHeight(kind, size) : 0);
+export function placementAt(kind: NewKind, [x, y]: GroundPosition): Placement {
+  const size = DEFAULT_SIZES_M[kind] ?? [];
+  const z = LIGHT_HEIGHTS_M[kind] ?? (isShape(kind) ? computeRestingHeight(kind, size) : 0);
   return { pose: [x, y, z, 0, 0, 0], size };
 }
 
 /** Returns the wall between two positions on the ground; null if they are too close. */
-export function placeWall(a: Place, b: Place): Placement | null {
+export function wallPlacementBetween(a: GroundPosition, b: GroundPosition): Placement | null {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const length = Math.hypot(dx, dy);
-  if (length < THICKNESS / 2) return null;
-  const size = [length, THICKNESS, HEIGHT];
+  if (length < WALL_THICKNESS_M / 2) return null;
+  const size = [length, WALL_THICKNESS_M, WALL_HEIGHT_M];
   return { pose: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, computeRestingHeight("wall", size), 0, 0, Math.atan2(dy, dx)], size };
 }
 
@@ -61,12 +61,12 @@ export function scaleSize(shape: Shape, size: readonly number[], scale: readonly
   // Dimensions that are not scaled may remain off the grid.
   return size.map((length, i) => {
     const factor = Math.abs(factors[i] ?? 1);
-    return factor === 1 ? length : Math.max(step || MIN_SIZE, snap(length * factor, step));
+    return factor === 1 ? length : Math.max(step || MIN_SIZE_M, snap(length * factor, step));
   });
 }
 
 /** Returns the change that resizes an entity; the bottom of an entity that is not tilted stays at its height. */
-export function resizeChange({ name, shape, size: oldSize, pose }: WorldEntity, size: readonly number[]): Change {
+export function createResizeChange({ name, shape, size: oldSize, pose }: WorldEntity, size: readonly number[]): Change {
   const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
   const change = { name, size: [...size] };
   if (shape === null || roll !== 0 || pitch !== 0) return change;
@@ -87,7 +87,7 @@ export function computeStretchFactors(shape: Shape, oldSize: readonly number[], 
 }
 
 export function isShape(kind: NewKind): kind is Shape {
-  return kind === "wall" || kind in SIZES;
+  return kind === "wall" || kind in DEFAULT_SIZES_M;
 }
 
 function chooseLargestFactor(...factors: number[]): number {

@@ -1,4 +1,4 @@
-import { isotonic } from "./isotonic";
+import { fitIsotonic } from "./isotonic";
 
 export interface Box {
   id: string;
@@ -29,13 +29,13 @@ export interface Layout {
   height: number;
 }
 
-const LAYER_GAP = 56;
-const BOX_GAP = 14;
-const DUMMY_HEIGHT = 6;
+const LAYER_GAP_PX = 56;
+const BOX_GAP_PX = 14;
+const DUMMY_HEIGHT_PX = 6;
 const ORDER_SWEEP_COUNT = 12;
 const PLACE_SWEEP_COUNT = 10;
 /** Half the distance between the two links of boxes that are linked in both directions. */
-const PAIR_OFFSET = 4;
+const PAIR_OFFSET_PX = 4;
 
 /** A box, or a dummy where a long link passes a layer. */
 interface Vertex {
@@ -59,34 +59,34 @@ interface Vertex {
  */
 export function layOutLayers(boxes: readonly Box[], links: readonly Link[]): Layout {
   const boxIds = new Map(boxes.map((box) => [box.id, box]));
-  const proper = links.filter(({ source, target }) => source !== target && boxIds.has(source) && boxIds.has(target));
-  const linkedBoxes = new Set(proper.flatMap(({ source, target }) => [source, target]));
-  const reversedLinks = findCycleClosingLinks(boxes, proper);
-  const forward = proper.map((link) => (reversedLinks.has(link) ? { source: link.target, target: link.source } : link));
-  const layerOf = layersOf(boxes.filter(({ id }) => linkedBoxes.has(id)), forward);
+  const validLinks = links.filter(({ source, target }) => source !== target && boxIds.has(source) && boxIds.has(target));
+  const linkedBoxes = new Set(validLinks.flatMap(({ source, target }) => [source, target]));
+  const reversedLinks = findCycleClosingLinks(boxes, validLinks);
+  const forwardLinks = validLinks.map((link) => (reversedLinks.has(link) ? { source: link.target, target: link.source } : link));
+  const layerOf = assignLayers(boxes.filter(({ id }) => linkedBoxes.has(id)), forwardLinks);
   const vertices = new Map<string, Vertex>();
   const layers: Vertex[][] = [];
-  const add = (box: Box | null, layer: number): Vertex => {
-    const vertex = { box, layer, x: 0, y: 0, height: box?.height ?? DUMMY_HEIGHT, predecessors: [], successors: [] };
+  const addVertex = (box: Box | null, layer: number): Vertex => {
+    const vertex = { box, layer, x: 0, y: 0, height: box?.height ?? DUMMY_HEIGHT_PX, predecessors: [], successors: [] };
     (layers[layer] ??= []).push(vertex);
     if (box) vertices.set(box.id, vertex);
     return vertex;
   };
-  for (const box of boxes) if (linkedBoxes.has(box.id)) add(box, layerOf.get(box.id) ?? 0);
-  const chains = forward.map(({ source, target }) => connectLayers(vertices, source, target, add));
+  for (const box of boxes) if (linkedBoxes.has(box.id)) addVertex(box, layerOf.get(box.id) ?? 0);
+  const chains = forwardLinks.map(({ source, target }) => connectLayers(vertices, source, target, addVertex));
   orderLayers(layers);
   placeVertically(layers);
-  const width = placeLayers(layers);
+  const width = placeHorizontally(layers);
   const result: Layout = { boxes: new Map(), routes: [], width, height: 0 };
   for (const [id, { box, x, y }] of vertices) if (box) result.boxes.set(id, { ...box, id, x, y });
-  const pairs = new Set(proper.map(({ source, target }) => `${source}\n${target}`));
-  proper.forEach((link, index) => {
-    const offset = pairs.has(`${link.target}\n${link.source}`) ? (reversedLinks.has(link) ? PAIR_OFFSET : -PAIR_OFFSET) : 0;
-    const points = route(chains[index] ?? [], offset);
+  const pairs = new Set(validLinks.map(({ source, target }) => `${source}\n${target}`));
+  validLinks.forEach((link, index) => {
+    const offset = pairs.has(`${link.target}\n${link.source}`) ? (reversedLinks.has(link) ? PAIR_OFFSET_PX : -PAIR_OFFSET_PX) : 0;
+    const points = routeThrough(chains[index] ?? [], offset);
     result.routes.push({ source: link.source, target: link.target, points: reversedLinks.has(link) ? points.reverse() : points });
   });
   shiftToOrigin(result);
-  placeUnlinked(boxes.filter(({ id }) => !linkedBoxes.has(id)), result);
+  placeUnlinkedBoxes(boxes.filter(({ id }) => !linkedBoxes.has(id)), result);
   return result;
 }
 
@@ -95,9 +95,9 @@ function findCycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): S
   const outgoing = new Map<string, Link[]>();
   const incoming = new Set(links.map(({ target }) => target));
   for (const link of links) outgoing.set(link.source, [...(outgoing.get(link.source) ?? []), link]);
-  const closers = new Set<Link>();
+  const closingLinks = new Set<Link>();
   const state = new Map<string, "open" | "done">();
-  const visit = (start: string): void => {
+  const searchFrom = (start: string): void => {
     const path = [{ id: start, next: 0 }];
     state.set(start, "open");
     for (let top = path.at(-1); top; top = path.at(-1)) {
@@ -105,7 +105,7 @@ function findCycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): S
       if (!link) {
         state.set(top.id, "done");
         path.pop();
-      } else if (state.get(link.target) === "open") closers.add(link);
+      } else if (state.get(link.target) === "open") closingLinks.add(link);
       else if (!state.has(link.target)) {
         state.set(link.target, "open");
         path.push({ id: link.target, next: 0 });
@@ -113,13 +113,13 @@ function findCycleClosingLinks(boxes: readonly Box[], links: readonly Link[]): S
     }
   };
   // Start at boxes without incoming links, where paths begin.
-  const starts = [...boxes].sort((a, b) => Number(incoming.has(a.id)) - Number(incoming.has(b.id)));
-  for (const { id } of starts) if (!state.has(id)) visit(id);
-  return closers;
+  const startBoxes = [...boxes].sort((a, b) => Number(incoming.has(a.id)) - Number(incoming.has(b.id)));
+  for (const { id } of startBoxes) if (!state.has(id)) searchFrom(id);
+  return closingLinks;
 }
 
 /** Returns the layer of each box: behind all boxes that link to it, and as close to its targets as that permits. */
-function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, number> {
+function assignLayers(boxes: readonly Box[], links: readonly Link[]): Map<string, number> {
   const layer = new Map(boxes.map(({ id }) => [id, 0]));
   const layerOf = (id: string): number => layer.get(id) ?? 0;
   for (let round = 0, hasMoved = true; hasMoved && round <= boxes.length; round++) {
@@ -130,9 +130,9 @@ function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, nu
       hasMoved = true;
     }
   }
-  const pointedAt = new Set(links.map(({ target }) => target));
+  const targetIds = new Set(links.map(({ target }) => target));
   for (const { id } of boxes) {
-    if (pointedAt.has(id)) continue;
+    if (targetIds.has(id)) continue;
     const targets = links.filter(({ source }) => source === id).map(({ target }) => layerOf(target));
     layer.set(id, Math.min(...targets) - 1);
   }
@@ -143,12 +143,12 @@ function connectLayers(
   vertices: ReadonlyMap<string, Vertex>,
   source: string,
   target: string,
-  add: (box: null, layer: number) => Vertex,
+  addVertex: (box: null, layer: number) => Vertex,
 ): Vertex[] {
   const [start, end] = [vertices.get(source), vertices.get(target)];
   if (!start || !end) return [];
   const chain = [start];
-  for (let layer = start.layer + 1; layer < end.layer; layer++) chain.push(add(null, layer));
+  for (let layer = start.layer + 1; layer < end.layer; layer++) chain.push(addVertex(null, layer));
   chain.push(end);
   for (let index = 1; index < chain.length; index++) {
     const [left, right] = [chain[index - 1], chain[index]];
@@ -165,26 +165,26 @@ function connectLayers(
  */
 function orderLayers(layers: Vertex[][]): void {
   let bestLayers = layers.map((layer) => [...layer]);
-  let fewest = countCrossings(layers);
-  for (let sweep = 0; sweep < ORDER_SWEEP_COUNT && fewest > 0; sweep++) {
+  let fewestCrossings = countCrossings(layers);
+  for (let sweep = 0; sweep < ORDER_SWEEP_COUNT && fewestCrossings > 0; sweep++) {
     const isForward = sweep % 2 === 0;
-    const places = new Map<Vertex, number>();
-    const numberPlaces = (layer: Vertex[]): void => layer.forEach((vertex, index) => places.set(vertex, index));
-    layers.forEach(numberPlaces);
+    const indexes = new Map<Vertex, number>();
+    const recordIndexes = (layer: Vertex[]): void => layer.forEach((vertex, index) => indexes.set(vertex, index));
+    layers.forEach(recordIndexes);
     for (const layer of isForward ? layers : [...layers].reverse()) {
-      const middles = new Map(
+      const meanIndexes = new Map(
         layer.map((vertex) => {
           const neighbors = isForward ? vertex.predecessors : vertex.successors;
-          const sum = neighbors.reduce((total, neighbor) => total + (places.get(neighbor) ?? 0), 0);
-          return [vertex, neighbors.length > 0 ? sum / neighbors.length : (places.get(vertex) ?? 0)];
+          const sum = neighbors.reduce((total, neighbor) => total + (indexes.get(neighbor) ?? 0), 0);
+          return [vertex, neighbors.length > 0 ? sum / neighbors.length : (indexes.get(vertex) ?? 0)];
         }),
       );
-      layer.sort((a, b) => (middles.get(a) ?? 0) - (middles.get(b) ?? 0));
-      numberPlaces(layer);
+      layer.sort((a, b) => (meanIndexes.get(a) ?? 0) - (meanIndexes.get(b) ?? 0));
+      recordIndexes(layer);
     }
     const count = countCrossings(layers);
-    if (count < fewest) {
-      fewest = count;
+    if (count < fewestCrossings) {
+      fewestCrossings = count;
       bestLayers = layers.map((layer) => [...layer]);
     }
   }
@@ -194,12 +194,12 @@ function orderLayers(layers: Vertex[][]): void {
 function countCrossings(layers: readonly (readonly Vertex[])[]): number {
   let count = 0;
   for (let index = 1; index < layers.length; index++) {
-    const places = new Map(layers[index]?.map((vertex, index) => [vertex, index]));
-    const ends = (layers[index - 1] ?? []).map((vertex) => vertex.successors.map((neighbor) => places.get(neighbor) ?? 0));
-    const previousEnds: number[] = [];
-    for (const group of ends) {
-      for (const end of group) count += previousEnds.filter((previousEnd) => previousEnd > end).length;
-      previousEnds.push(...group);
+    const indexes = new Map(layers[index]?.map((vertex, index) => [vertex, index]));
+    const targetIndexes = (layers[index - 1] ?? []).map((vertex) => vertex.successors.map((neighbor) => indexes.get(neighbor) ?? 0));
+    const previousIndexes: number[] = [];
+    for (const indexesOfVertex of targetIndexes) {
+      for (const targetIndex of indexesOfVertex) count += previousIndexes.filter((previousIndex) => previousIndex > targetIndex).length;
+      previousIndexes.push(...indexesOfVertex);
     }
   }
   return count;
@@ -211,49 +211,49 @@ function placeVertically(layers: readonly (readonly Vertex[])[]): void {
     let y = 0;
     for (const vertex of layer) {
       vertex.y = y + vertex.height / 2;
-      y += vertex.height + BOX_GAP;
+      y += vertex.height + BOX_GAP_PX;
     }
   }
   for (let sweep = 0; sweep < PLACE_SWEEP_COUNT; sweep++) {
     const isForward = sweep % 2 === 0;
     for (const layer of isForward ? layers : [...layers].reverse()) {
-      const wantedHeights = layer.map((vertex) => {
+      const idealYs = layer.map((vertex) => {
         const neighbors = sweep >= PLACE_SWEEP_COUNT - 2 ? [...vertex.predecessors, ...vertex.successors] : isForward ? vertex.predecessors : vertex.successors;
         return neighbors.length > 0 ? neighbors.reduce((sum, neighbor) => sum + neighbor.y, 0) / neighbors.length : vertex.y;
       });
       const offsets: number[] = [];
       layer.forEach((vertex, index) => {
         const vertexAbove = layer[index - 1];
-        offsets.push(vertexAbove ? (offsets[index - 1] ?? 0) + (vertexAbove.height + vertex.height) / 2 + BOX_GAP : 0);
+        offsets.push(vertexAbove ? (offsets[index - 1] ?? 0) + (vertexAbove.height + vertex.height) / 2 + BOX_GAP_PX : 0);
       });
-      const free = isotonic(wantedHeights.map((y, index) => y - (offsets[index] ?? 0)));
-      layer.forEach((vertex, index) => (vertex.y = (free[index] ?? 0) + (offsets[index] ?? 0)));
+      const fittedYs = fitIsotonic(idealYs.map((y, index) => y - (offsets[index] ?? 0)));
+      layer.forEach((vertex, index) => (vertex.y = (fittedYs[index] ?? 0) + (offsets[index] ?? 0)));
     }
   }
 }
 
 /** Sets the horizontal position of each layer, and returns the total width. */
-function placeLayers(layers: readonly (readonly Vertex[])[]): number {
+function placeHorizontally(layers: readonly (readonly Vertex[])[]): number {
   let x = 0;
   for (const layer of layers) {
     const width = Math.max(0, ...layer.map((vertex) => vertex.box?.width ?? 0));
     for (const vertex of layer) vertex.x = x + width / 2;
-    x += width + LAYER_GAP;
+    x += width + LAYER_GAP_PX;
   }
-  return Math.max(0, x - LAYER_GAP);
+  return Math.max(0, x - LAYER_GAP_PX);
 }
 
-function route(vertices: readonly Vertex[], offset: number): [number, number][] {
+function routeThrough(vertices: readonly Vertex[], offset: number): [number, number][] {
   return vertices.map(({ box, x, y }, index) => {
-    const half = (box?.width ?? 0) / 2;
-    return [index === 0 ? x + half : index === vertices.length - 1 ? x - half : x, y + offset];
+    const halfWidth = (box?.width ?? 0) / 2;
+    return [index === 0 ? x + halfWidth : index === vertices.length - 1 ? x - halfWidth : x, y + offset];
   });
 }
 
 function shiftToOrigin(layout: Layout): void {
   const boxes = [...layout.boxes.values()];
   if (boxes.length === 0) return;
-  const points = layout.routes.flatMap((edgeRoute) => edgeRoute.points);
+  const points = layout.routes.flatMap((route) => route.points);
   const top = Math.min(...boxes.map(({ y, height }) => y - height / 2), ...points.map(([, y]) => y));
   for (const box of boxes) box.y -= top;
   for (const point of points) point[1] -= top;
@@ -261,15 +261,15 @@ function shiftToOrigin(layout: Layout): void {
 }
 
 /** Places boxes without links in rows below the others. */
-function placeUnlinked(boxes: readonly Box[], layout: Layout): void {
+function placeUnlinkedBoxes(boxes: readonly Box[], layout: Layout): void {
   const maxWidth = Math.max(layout.width, 640);
-  let [x, y, rowHeight] = [0, layout.height > 0 ? layout.height + 2 * BOX_GAP : 0, 0];
+  let [x, y, rowHeight] = [0, layout.height > 0 ? layout.height + 2 * BOX_GAP_PX : 0, 0];
   for (const box of boxes) {
-    if (x > 0 && x + box.width > maxWidth) [x, y, rowHeight] = [0, y + rowHeight + BOX_GAP, 0];
+    if (x > 0 && x + box.width > maxWidth) [x, y, rowHeight] = [0, y + rowHeight + BOX_GAP_PX, 0];
     layout.boxes.set(box.id, { ...box, x: x + box.width / 2, y: y + box.height / 2 });
     layout.width = Math.max(layout.width, x + box.width);
     layout.height = Math.max(layout.height, y + box.height);
-    x += box.width + BOX_GAP;
+    x += box.width + BOX_GAP_PX;
     rowHeight = Math.max(rowHeight, box.height);
   }
 }

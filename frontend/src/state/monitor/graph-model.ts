@@ -36,17 +36,17 @@ export interface DrawnGraph {
 const DEBUG_TOPICS = new Set(["/rosout", "/parameter_events", "/statistics", "/diagnostics_agg"]);
 const DEBUG_NODES = /(^|\/)_?(ros2cli|rqt_gui)[^/]*$/;
 const TF_TOPICS = new Set(["/tf", "/tf_static"]);
-const ACTION = "/_action/";
+const ACTION_NAMESPACE = "/_action/";
 
 /** Returns the vertices and edges to draw for a graph. */
 export function buildGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph {
   const vertices = new Map<string, GraphVertex>();
   const nodes = graph.nodes.filter((name) => options.showsDebug || !DEBUG_NODES.test(name));
-  const owners = new Map(nodes.map((name) => [name, ownerOf(name, options)]));
-  for (const owner of owners.values()) {
-    const vertex = vertices.get(owner.id);
+  const nodeVertices = new Map(nodes.map((name) => [name, vertexOf(name, options)]));
+  for (const nodeVertex of nodeVertices.values()) {
+    const vertex = vertices.get(nodeVertex.id);
     if (vertex) vertex.count++;
-    else vertices.set(owner.id, { ...owner });
+    else vertices.set(nodeVertex.id, { ...nodeVertex });
   }
   const edges = new Map<string, GraphEdge>();
   const connect = (source: string, target: string, topics: string[]): void => {
@@ -55,17 +55,17 @@ export function buildGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph 
     if (!edge) edges.set(key, { source, target, topics });
     else edge.topics = [...new Set([...edge.topics, ...topics])];
   };
-  const endsOf = (names: readonly string[]): string[] => [
-    ...new Set(names.map((name) => owners.get(name)?.id).filter((id) => id !== undefined)),
+  const vertexIdsOf = (names: readonly string[]): string[] => [
+    ...new Set(names.map((name) => nodeVertices.get(name)?.id).filter((id) => id !== undefined)),
   ];
-  for (const topic of topicsOf(graph, options)) {
-    const [publishers, subscribers] = [endsOf(topic.publishers), endsOf(topic.subscribers)];
+  for (const topic of listShownTopics(graph, options)) {
+    const [publishers, subscribers] = [vertexIdsOf(topic.publishers), vertexIdsOf(topic.subscribers)];
     if (options.mode !== "all" && (publishers.length === 0 || subscribers.length === 0)) continue;
-    const [first, ...otherNodes] = new Set([...publishers, ...subscribers]);
+    const [firstId, ...otherIds] = new Set([...publishers, ...subscribers]);
     // Topics within a closed group are not shown.
-    if (otherNodes.length === 0 && vertices.get(first ?? "")?.kind === "group") continue;
+    if (otherIds.length === 0 && vertices.get(firstId ?? "")?.kind === "group") continue;
     if (options.mode === "nodes") {
-      for (const [source, target] of pairsOf(publishers, subscribers)) connect(source, target, [topic.name]);
+      for (const [source, target] of listPairs(publishers, subscribers)) connect(source, target, [topic.name]);
       continue;
     }
     const id = `topic:${topic.name}`;
@@ -77,32 +77,32 @@ export function buildGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph 
 }
 
 /** Returns all pairs of a publisher and another subscriber. */
-function pairsOf(publishers: readonly string[], subscribers: readonly string[]): (readonly [string, string])[] {
+function listPairs(publishers: readonly string[], subscribers: readonly string[]): (readonly [string, string])[] {
   return publishers.flatMap((source) => subscribers.filter((target) => target !== source).map((target) => [source, target] as const));
 }
 
-interface JoinedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscribers"> {
+interface MergedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscribers"> {
   isAction: boolean;
 }
 
 /** Returns the topics that pass the filters; the topics of an action are merged into one. */
-function topicsOf(graph: NodeGraph, options: GraphOptions): JoinedTopic[] {
-  const joinedTopics = new Map<string, JoinedTopic>();
+function listShownTopics(graph: NodeGraph, options: GraphOptions): MergedTopic[] {
+  const mergedTopics = new Map<string, MergedTopic>();
   for (const { name, publishers, subscribers } of graph.topics) {
     if (!options.showsDebug && DEBUG_TOPICS.has(name)) continue;
     if (!options.showsTf && TF_TOPICS.has(name)) continue;
-    const index = name.indexOf(ACTION);
+    const index = name.indexOf(ACTION_NAMESPACE);
     const shownName = index < 0 ? name : name.slice(0, index);
-    const topic = joinedTopics.get(shownName);
+    const topic = mergedTopics.get(shownName);
     if (topic) {
       topic.publishers = [...new Set([...topic.publishers, ...publishers])];
       topic.subscribers = [...new Set([...topic.subscribers, ...subscribers])];
-    } else joinedTopics.set(shownName, { name: shownName, publishers, subscribers, isAction: index >= 0 });
+    } else mergedTopics.set(shownName, { name: shownName, publishers, subscribers, isAction: index >= 0 });
   }
-  return [...joinedTopics.values()];
+  return [...mergedTopics.values()];
 }
 
-function ownerOf(node: string, { groupsNamespaces, openGroups }: GraphOptions): GraphVertex {
+function vertexOf(node: string, { groupsNamespaces, openGroups }: GraphOptions): GraphVertex {
   const namespace = node.slice(0, node.indexOf("/", 1));
   if (groupsNamespaces && node.indexOf("/", 1) > 0 && !openGroups.has(namespace)) {
     return { id: `group:${namespace}`, kind: "group", label: `${namespace}/`, count: 1 };

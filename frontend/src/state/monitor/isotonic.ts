@@ -2,7 +2,7 @@
  * Returns the non-decreasing values closest to the given ones (least squares): neighbors in the wrong order are
  * averaged.
  */
-export function isotonic(values: readonly number[]): number[] {
+export function fitIsotonic(values: readonly number[]): number[] {
   const blocks: { sum: number; count: number }[] = [];
   for (const value of values) {
     let block = { sum: value, count: 1 };

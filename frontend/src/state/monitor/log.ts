@@ -3,8 +3,8 @@ import type { LogLine } from "../../protocol";
 import { Signal } from "../../signal";
 
 /** The maximum number of records; beyond it, the oldest tenth is dropped. */
-export const MAX_LINES = 20_000;
-const SAVED_KEY = "linkwright.log-levels";
+export const MAX_RECORDS = 20_000;
+const STORAGE_KEY = "linkwright.log-levels";
 
 export const LEVELS = [10, 20, 30, 40, 50] as const;
 export type Level = (typeof LEVELS)[number];
@@ -36,8 +36,8 @@ export class LogState {
   private pendingLines: LogLine[] = [];
   private isOpen = false;
   /**
-   * Whether the next records are the first of a connection: the server starts with past records, and the page may already
-   * have some of them.
+   * Whether the next records are the first of a connection: the server starts with past records, and the page may
+   * already have some of them.
    */
   private isFirstBatch = true;
 
@@ -45,7 +45,7 @@ export class LogState {
     private readonly connection: Connection,
     private readonly storage: Pick<Storage, "getItem" | "setItem">,
   ) {
-    const savedText = storage.getItem(SAVED_KEY);
+    const savedText = storage.getItem(STORAGE_KEY);
     this.levels = new Set(savedText === null ? LEVELS : savedText.split(",").map(Number));
     connection.on("hello", () => {
       this.isFirstBatch = true;
@@ -53,7 +53,7 @@ export class LogState {
     });
     connection.on("log_lines", ({ lines, missed }) => {
       this.missedCount += missed;
-      this.add(this.isFirstBatch ? this.unknownOf(lines) : lines);
+      this.add(this.isFirstBatch ? this.filterUnknown(lines) : lines);
       this.isFirstBatch = false;
     });
   }
@@ -72,7 +72,7 @@ export class LogState {
   setLevel(level: number, isShown: boolean): void {
     if (isShown) this.levels.add(level);
     else this.levels.delete(level);
-    this.storage.setItem(SAVED_KEY, [...this.levels].join(","));
+    this.storage.setItem(STORAGE_KEY, [...this.levels].join(","));
     this.filter();
   }
 
@@ -102,20 +102,20 @@ export class LogState {
     this.filter();
   }
 
-  private unknownOf(lines: readonly LogLine[]): LogLine[] {
-    const knownKeys = new Set([...this.lines, ...this.pendingLines].map(keyOf));
-    return lines.filter((line) => !knownKeys.has(keyOf(line)));
+  private filterUnknown(lines: readonly LogLine[]): LogLine[] {
+    const knownKeys = new Set([...this.lines, ...this.pendingLines].map(createRecordKey));
+    return lines.filter((line) => !knownKeys.has(createRecordKey(line)));
   }
 
   private add(lines: readonly LogLine[]): void {
     if (this.isPaused) {
       this.pendingLines.push(...lines);
-      if (this.pendingLines.length > MAX_LINES) this.pendingLines = this.pendingLines.slice(-MAX_LINES);
+      if (this.pendingLines.length > MAX_RECORDS) this.pendingLines = this.pendingLines.slice(-MAX_RECORDS);
       return;
     }
     this.lines.push(...lines);
-    if (this.lines.length > MAX_LINES) {
-      this.lines = this.lines.slice(-MAX_LINES * 0.9);
+    if (this.lines.length > MAX_RECORDS) {
+      this.lines = this.lines.slice(-MAX_RECORDS * 0.9);
       this.filter();
       return;
     }
@@ -139,6 +139,6 @@ export class LogState {
   }
 }
 
-function keyOf({ time, node, message }: LogLine): string {
+function createRecordKey({ time, node, message }: LogLine): string {
   return JSON.stringify([time, node, message]);
 }

@@ -12,11 +12,11 @@ export class ParametersState {
   node: string | null = null;
   /** The parameters of the chosen node; null until the node has answered. */
   parameters: NodeParameters | null = null;
-  private isListed = false;
+  private isWatching = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      if (this.isListed) this.sendWatch();
+      if (this.isWatching) this.sendWatch();
     });
     connection.on("parameter_nodes", ({ nodes }) => {
       this.nodes = nodes;
@@ -34,12 +34,12 @@ export class ParametersState {
   }
 
   watch(isWatched: boolean): void {
-    if (isWatched === this.isListed) return;
-    this.isListed = isWatched;
+    if (isWatched === this.isWatching) return;
+    this.isWatching = isWatched;
     this.sendWatch();
   }
 
-  choose(node: string | null): void {
+  chooseNode(node: string | null): void {
     this.node = node;
     this.parameters = null;
     this.changed.emit();
@@ -55,7 +55,7 @@ export class ParametersState {
   }
 
   private sendWatch(): void {
-    const node = this.isListed ? this.node : null;
-    this.connection.send({ type: "watch_parameters", wants_list: this.isListed, node });
+    const node = this.isWatching ? this.node : null;
+    this.connection.send({ type: "watch_parameters", wants_list: this.isWatching, node });
   }
 }

@@ -25,8 +25,8 @@ export function tabulatePlot(
   if (total <= 2 * pixelColumns) return tabulateSamples(series, source, spans);
   // Columns must not shift while the window moves, or the line would flicker. The width is rounded, because differences
   // of times are not exact.
-  const width = Number(((endTime - startTime) / pixelColumns).toPrecision(5));
-  return tabulateExtremes(series, source, spans, Math.floor(startTime / width) * width, width, pixelColumns + 1);
+  const columnWidth = Number(((endTime - startTime) / pixelColumns).toPrecision(5));
+  return tabulateExtremes(series, source, spans, Math.floor(startTime / columnWidth) * columnWidth, columnWidth, pixelColumns + 1);
 }
 
 /**
@@ -78,28 +78,28 @@ function tabulateExtremes(
   source: TimeSource,
   spans: Spans,
   startTime: number,
-  width: number,
-  count: number,
+  columnWidth: number,
+  columnCount: number,
 ): PlotTable {
   // Two rows for each column, and one more column on each side for the samples beyond.
-  const times = Array.from({ length: 2 * (count + 2) }, (_, row) => startTime + ((row >> 1) - 1 + (row % 2 ? 0.75 : 0.25)) * width);
+  const times = Array.from({ length: 2 * (columnCount + 2) }, (_, row) => startTime + ((row >> 1) - 1 + (row % 2 ? 0.75 : 0.25)) * columnWidth);
   const columns = series.map((buffer, index) => {
     const column = new Array<number | null | undefined>(times.length);
     const [start, end] = spans[index] ?? [0, 0];
     const [sampleTimes, values] = [buffer.timesOf(source), buffer.values];
-    let sample = start;
-    while (sample < end) {
-      const bucket = bucketOf(sampleTimes[sample] ?? 0, startTime, width, count);
-      let [minimum, maximum] = [sample, sample];
-      let next = sample;
-      for (; next < end && bucketOf(sampleTimes[next] ?? 0, startTime, width, count) === bucket; next++) {
-        const value = values[next] ?? NaN;
-        if (!(value >= (values[minimum] ?? NaN))) minimum = next;
-        if (!(value <= (values[maximum] ?? NaN))) maximum = next;
+    let firstSample = start;
+    while (firstSample < end) {
+      const bucket = bucketOf(sampleTimes[firstSample] ?? 0, startTime, columnWidth, columnCount);
+      let [minimum, maximum] = [firstSample, firstSample];
+      let nextSample = firstSample;
+      for (; nextSample < end && bucketOf(sampleTimes[nextSample] ?? 0, startTime, columnWidth, columnCount) === bucket; nextSample++) {
+        const value = values[nextSample] ?? NaN;
+        if (!(value >= (values[minimum] ?? NaN))) minimum = nextSample;
+        if (!(value <= (values[maximum] ?? NaN))) maximum = nextSample;
       }
       column[2 * bucket] = toDrawnValue(values[Math.min(minimum, maximum)]);
       if (minimum !== maximum) column[2 * bucket + 1] = toDrawnValue(values[Math.max(minimum, maximum)]);
-      sample = next;
+      firstSample = nextSample;
     }
     return column;
   });

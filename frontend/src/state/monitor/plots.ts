@@ -20,14 +20,14 @@ export interface Plot {
   range: readonly [number, number] | null;
 }
 
-interface Saved {
+interface SavedPlots {
   seconds: number;
   source: TimeSource;
   plots: { series: FieldName[]; range: readonly [number, number] | null }[];
 }
 
-const SAVED_KEY = "linkwright.plots.1";
-const FIRST_SECONDS = 30;
+const STORAGE_KEY = "linkwright.plots.1";
+const DEFAULT_WINDOW_S = 30;
 
 /** The plots and their samples, which the server sends only while the panel is open. */
 export class PlotsState {
@@ -38,9 +38,9 @@ export class PlotsState {
   readonly fieldsArrived = new Signal<TopicFields>();
   readonly plots: Plot[] = [];
   /** The length of the window, s. */
-  seconds = FIRST_SECONDS;
+  seconds = DEFAULT_WINDOW_S;
   source: TimeSource = "received";
-  private frozenAt: readonly [number, number] | null = null;
+  private frozenWindow: readonly [number, number] | null = null;
   private isOpen = false;
   private isLive = true;
   private nextId = 1;
@@ -74,12 +74,12 @@ export class PlotsState {
   }
 
   get isPaused(): boolean {
-    return this.frozenAt !== null;
+    return this.frozenWindow !== null;
   }
 
   /** The time span of the plots, s; null if there is nothing to show. */
   get window(): readonly [number, number] | null {
-    if (this.frozenAt) return this.frozenAt;
+    if (this.frozenWindow) return this.frozenWindow;
     const times = this.series.map((series) => series.buffer.latestTimeOf(this.source)).filter((time) => time !== null);
     if (times.length === 0) return null;
     const end = Math.max(...times);
@@ -122,33 +122,33 @@ export class PlotsState {
 
   setSeconds(seconds: number): void {
     this.seconds = seconds;
-    this.frozenAt = null;
+    this.frozenWindow = null;
     this.store();
   }
 
   setSource(source: TimeSource): void {
     this.source = source;
-    this.frozenAt = null;
+    this.frozenWindow = null;
     this.store();
   }
 
   /** Freezes or resumes the plots; samples are received in both cases. */
   setPaused(isPaused: boolean): void {
-    this.frozenAt = isPaused ? this.window : null;
+    this.frozenWindow = isPaused ? this.window : null;
     this.changed.emit();
     this.moved.emit();
   }
 
   /** Freezes the plots at a time span. */
   freezeAt(start: number, end: number): void {
-    this.frozenAt = [start, end];
+    this.frozenWindow = [start, end];
     this.changed.emit();
     this.moved.emit();
   }
 
   clear(): void {
     for (const { buffer } of this.series) buffer.clear();
-    this.frozenAt = null;
+    this.frozenWindow = null;
     this.changed.emit();
     this.moved.emit();
   }
@@ -165,7 +165,7 @@ export class PlotsState {
   }
 
   private store(): void {
-    const savedState: Saved = {
+    const savedState: SavedPlots = {
       seconds: this.seconds,
       source: this.source,
       plots: this.plots.map(({ series, range }) => ({
@@ -173,17 +173,17 @@ export class PlotsState {
         range,
       })),
     };
-    this.storage.setItem(SAVED_KEY, JSON.stringify(savedState));
+    this.storage.setItem(STORAGE_KEY, JSON.stringify(savedState));
     if (this.isOpen) this.sendWatch();
     this.changed.emit();
     this.moved.emit();
   }
 
   private restore(): void {
-    const text = this.storage.getItem(SAVED_KEY);
+    const text = this.storage.getItem(STORAGE_KEY);
     if (text === null) return;
     try {
-      const savedState = JSON.parse(text) as Saved;
+      const savedState = JSON.parse(text) as SavedPlots;
       for (const { series, range } of savedState.plots) {
         const plot = series.map(({ topic, path }) => ({
           topic,

@@ -6,12 +6,12 @@ export interface Motion {
   turn: number;
 }
 
-export const STILL: Motion = { x: 0, y: 0, z: 0, turn: 0 };
+export const NO_MOTION: Motion = { x: 0, y: 0, z: 0, turn: 0 };
 
 const createMotion = (x: number, turn = 0, y = 0, z = 0): Motion => ({ x, y, z, turn });
 
 /** The keys of teleop_twist_keyboard, the arrow keys, and WASD. With Shift they move sideways instead of turning. */
-const KEYS: Readonly<Record<string, Motion>> = {
+const MOTION_BY_KEY: Readonly<Record<string, Motion>> = {
   i: createMotion(1),
   o: createMotion(1, -1),
   j: createMotion(0, 1),
@@ -44,16 +44,16 @@ const KEYS: Readonly<Record<string, Motion>> = {
   ArrowRight: createMotion(0, -1),
 };
 
-const SIDEWAYS: Readonly<Record<string, Motion>> = { ArrowLeft: createMotion(0, 0, 1), ArrowRight: createMotion(0, 0, -1) };
+const SIDEWAYS_ARROWS: Readonly<Record<string, Motion>> = { ArrowLeft: createMotion(0, 0, 1), ArrowRight: createMotion(0, 0, -1) };
 
 /** Returns the motion of a key; null for other keys. */
 export function motionOfKey(key: string, isShiftDown: boolean): Motion | null {
-  return (isShiftDown ? SIDEWAYS[key] : undefined) ?? KEYS[key] ?? null;
+  return (isShiftDown ? SIDEWAYS_ARROWS[key] : undefined) ?? MOTION_BY_KEY[key] ?? null;
 }
 
 /** Returns the sum of several motions, clamped to -1 to 1. */
-export function sumOf(motions: Iterable<Motion>): Motion {
-  const sum = { ...STILL };
+export function sumMotions(motions: Iterable<Motion>): Motion {
+  const sum = { ...NO_MOTION };
   for (const motion of motions) {
     sum.x += motion.x;
     sum.y += motion.y;

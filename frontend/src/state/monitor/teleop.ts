@@ -1,7 +1,7 @@
 import type { Connection } from "../../connection/connection";
 import type { TeleopState as Aim, TwistKind } from "../../protocol";
 import { Signal } from "../../signal";
-import { isStill, STILL, sumOf, type Motion } from "./teleop-keys";
+import { isStill, NO_MOTION, sumMotions, type Motion } from "./teleop-keys";
 
 export interface TeleopSettings {
   topic: string;
@@ -17,10 +17,10 @@ export interface TeleopSettings {
 }
 
 /** A source of motion; the motions of all sources are added. */
-export type Source = "keys" | "pad" | "gamepad";
+export type MotionSource = "keys" | "pad" | "gamepad";
 
-const SAVED_KEY = "linkwright.teleop.1";
-const DEFAULTS: TeleopSettings = {
+const STORAGE_KEY = "linkwright.teleop.1";
+const DEFAULT_SETTINGS: TeleopSettings = {
   topic: "/cmd_vel",
   kind: "auto",
   frameId: "base_link",
@@ -37,7 +37,7 @@ export class TeleopState {
   settings: TeleopSettings;
   /** The target that the server uses; null until it has reported one. */
   aim: Aim | null = null;
-  private readonly motions = new Map<Source, Motion>();
+  private readonly motions = new Map<MotionSource, Motion>();
   private isOpen = false;
   private timer = 0;
 
@@ -45,7 +45,7 @@ export class TeleopState {
     private readonly connection: Connection,
     private readonly storage: Pick<Storage, "getItem" | "setItem">,
   ) {
-    this.settings = { ...DEFAULTS, ...parseSettings(storage.getItem(SAVED_KEY)) };
+    this.settings = { ...DEFAULT_SETTINGS, ...parseSettings(storage.getItem(STORAGE_KEY)) };
     connection.on("hello", () => {
       if (this.isOpen) this.sendTarget();
     });
@@ -60,7 +60,7 @@ export class TeleopState {
 
   /** The sum of the motions of all sources. */
   get motion(): Motion {
-    return sumOf(this.motions.values());
+    return sumMotions(this.motions.values());
   }
 
   setOpen(isOpen: boolean): void {
@@ -74,7 +74,7 @@ export class TeleopState {
   configure(change: Partial<TeleopSettings>): void {
     const previousSettings = this.settings;
     this.settings = { ...previousSettings, ...change };
-    this.storage.setItem(SAVED_KEY, JSON.stringify(this.settings));
+    this.storage.setItem(STORAGE_KEY, JSON.stringify(this.settings));
     const { topic, kind, frameId } = this.settings;
     if (topic !== previousSettings.topic || kind !== previousSettings.kind || frameId !== previousSettings.frameId) {
       this.stop();
@@ -84,12 +84,13 @@ export class TeleopState {
   }
 
   /** Sets the motion of a source from now on. */
-  move(source: Source, motion: Motion): void {
+  move(source: MotionSource, motion: Motion): void {
     const previousMotion = this.motion;
     if (isStill(motion)) this.motions.delete(source);
     else this.motions.set(source, motion);
     const currentMotion = this.motion;
-    if (currentMotion.x === previousMotion.x && currentMotion.y === previousMotion.y && currentMotion.z === previousMotion.z && currentMotion.turn === previousMotion.turn) return;
+    const isUnchanged = (["x", "y", "z", "turn"] as const).every((component) => currentMotion[component] === previousMotion[component]);
+    if (isUnchanged) return;
     if (isStill(currentMotion)) this.stop();
     else if (this.timer === 0) this.drive();
     this.changed.emit();
@@ -102,11 +103,11 @@ export class TeleopState {
     this.timer = 0;
     this.motions.clear();
     if (!isDriving) return;
-    this.send(STILL);
+    this.send(NO_MOTION);
     this.changed.emit();
   }
 
-  /** Sends the current motion, and repeats that at the rate. */
+  /** Sends the current motion repeatedly, at the configured rate. */
   private drive(): void {
     this.send(this.motion);
     this.timer = window.setTimeout(() => this.drive(), 1000 / this.settings.rate);

@@ -1,7 +1,7 @@
-import { add, dot, scale, subtract, rotateZ, unit, type Vector } from "./vector";
+import { add, dot, scale, subtract, rotateZ, normalize, type Vector } from "./vector";
 
 /** Ogre's default vertical field of view, which RViz does not change. */
-export const FIELD_OF_VIEW = Math.PI / 4;
+export const FIELD_OF_VIEW_RAD = Math.PI / 4;
 
 /** The pose and projection of a camera. */
 export interface Camera {
@@ -22,7 +22,7 @@ export interface Target {
   readonly yaw: number;
 }
 
-export const FIXED: Target = { position: [0, 0, 0], yaw: 0 };
+export const FIXED_TARGET: Target = { position: [0, 0, 0], yaw: 0 };
 
 export interface Ray {
   readonly origin: Vector;
@@ -61,13 +61,13 @@ export function castRay(camera: Camera, x: number, y: number, { width, height }:
     const [right, upward] = [(x - width / 2) / camera.scale, (height / 2 - y) / camera.scale];
     return { origin: add(add(camera.position, camera.right, right), camera.up, upward), direction: forward };
   }
-  const meters = (2 * Math.tan(FIELD_OF_VIEW / 2)) / height; // a pixel, 1 m from the camera
-  const direction = add(add(forward, camera.right, (x - width / 2) * meters), camera.up, (height / 2 - y) * meters);
-  return { origin: camera.position, direction: unit(direction) };
+  const metersPerPixel = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / height; // a pixel, 1 m from the camera
+  const direction = add(add(forward, camera.right, (x - width / 2) * metersPerPixel), camera.up, (height / 2 - y) * metersPerPixel);
+  return { origin: camera.position, direction: normalize(direction) };
 }
 
 /** Returns the intersection of a ray with the plane z = 0; null if the ray does not reach it. */
-export function onGround({ origin, direction }: Ray): Vector | null {
+export function intersectGround({ origin, direction }: Ray): Vector | null {
   const distance = -origin[2] / direction[2];
   if (!Number.isFinite(distance) || distance < 0) return null;
   return add(origin, direction, distance);
@@ -88,5 +88,5 @@ function transformCamera(camera: Camera, transformPoint: (point: Vector) => Vect
 export function computePixelSize(camera: Camera, point: Vector, { height }: ViewSize): number {
   if (camera.scale !== null) return 1 / camera.scale;
   const depth = Math.max(1e-3, dot(subtract(camera.position, point), camera.back));
-  return (2 * depth * Math.tan(FIELD_OF_VIEW / 2)) / height;
+  return (2 * depth * Math.tan(FIELD_OF_VIEW_RAD / 2)) / height;
 }

@@ -1,13 +1,13 @@
-import { FIELD_OF_VIEW, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { FIELD_OF_VIEW_RAD, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { add, dot, scale, subtract, type Bounds, type Vector } from "./vector";
 import { readNumber, type ViewValues } from "./view-controller";
 
 /** The margin around the box, as a factor of its size. */
-const MARGIN = 1.2;
+const MARGIN_FACTOR = 1.2;
 /** The minimum near clip distance, and its share of the distance to the box. */
-const MIN_CLIP = 0.001;
-const CLIP_SHARE = 0.25;
-const NEAR_CLIP = "Near Clip Distance";
+const MIN_NEAR_CLIP_M = 0.001;
+const NEAR_CLIP_SHARE = 0.25;
+const NEAR_CLIP_PATH = "Near Clip Distance";
 
 /** The framing of a box from the direction of a camera. */
 export interface Framing {
@@ -28,22 +28,22 @@ export interface Framing {
 export function computeFraming(camera: Camera, values: ViewValues, bounds: Bounds, { width, height }: ViewSize): Framing {
   const { right, up, back } = camera;
   const center = scale(add(bounds.min, bounds.max), 0.5);
-  const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
-  let [distance, meters, front] = [0, 0, 0];
+  const tangent = Math.tan(FIELD_OF_VIEW_RAD / 2) / MARGIN_FACTOR;
+  let [distance, metersPerPixel, frontDepth] = [0, 0, 0];
   for (const point of bounds.points ?? cornersOf(bounds)) {
     const corner = subtract(point, center);
     const [horizontal, vertical] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
     distance = Math.max(distance, dot(corner, back) + Math.max(vertical, (horizontal * height) / width) / tangent);
-    meters = Math.max(meters, (2 * horizontal) / width, (2 * vertical) / height);
-    front = Math.max(front, dot(corner, back));
+    metersPerPixel = Math.max(metersPerPixel, (2 * horizontal) / width, (2 * vertical) / height);
+    frontDepth = Math.max(frontDepth, dot(corner, back));
   }
-  const clipDistance = CLIP_SHARE * (distance - front);
-  const isClipped = clipDistance > 0 && readNumber(values, NEAR_CLIP, 0) > clipDistance;
+  const clipDistance = NEAR_CLIP_SHARE * (distance - frontDepth);
+  const isClipped = clipDistance > 0 && readNumber(values, NEAR_CLIP_PATH, 0) > clipDistance;
   return {
     center,
     distance,
-    scale: meters > 0 ? 1 / (meters * MARGIN) : 0,
-    clip: isClipped ? { [NEAR_CLIP]: Math.max(MIN_CLIP, clipDistance) } : {},
+    scale: metersPerPixel > 0 ? 1 / (metersPerPixel * MARGIN_FACTOR) : 0,
+    clip: isClipped ? { [NEAR_CLIP_PATH]: Math.max(MIN_NEAR_CLIP_M, clipDistance) } : {},
   };
 }
 
@@ -59,7 +59,7 @@ export function transformBounds(bounds: Bounds, target: Target): Bounds {
 }
 
 /** Whether a box contains another. */
-export function contains(outer: Bounds, inner: Bounds): boolean {
+export function containsBounds(outer: Bounds, inner: Bounds): boolean {
   return ([0, 1, 2] as const).every((i) => outer.min[i] <= inner.min[i] && inner.max[i] <= outer.max[i]);
 }
 

@@ -9,7 +9,8 @@ import {
   createVectorValues,
   wrapYaw,
   type Drag,
-  type Look,
+  type DragButtons,
+  type PreviousView,
   type Motion,
   type MouseHint,
   type ViewController,
@@ -18,12 +19,12 @@ import {
 
 type FpsMotion = Extract<Motion, "rotate3d" | "moveXY" | "moveZ">;
 
-const START: Vector = [5, 5, 10];
+const START_POSITION: Vector = [5, 5, 10];
 const METERS_PER_PIXEL = 0.01;
 const METERS_PER_PIXEL_AHEAD = 0.1;
 const METERS_PER_WHEEL_UNIT = 0.01;
 /** A direction whose z component exceeds this counts as vertical: its yaw is defined by the up direction. */
-const VERTICAL = 0.99999;
+const MIN_VERTICAL_COMPONENT = 0.99999;
 
 /** RViz's FPS: a flying camera; yaw rotates it about z, pitch tilts it down. */
 export class FpsController implements ViewController {
@@ -35,16 +36,16 @@ export class FpsController implements ViewController {
     const pitch = clampPitch(readNumber(values, "Pitch", 0));
     const back: Vector = [-Math.cos(yaw) * Math.cos(pitch), -Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
     const right: Vector = [Math.sin(yaw), -Math.cos(yaw), 0];
-    return { position: readVector(values, "Position", START), right, up: cross(back, right), back, scale: null, focal: null };
+    return { position: readVector(values, "Position", START_POSITION), right, up: cross(back, right), back, scale: null, focal: null };
   }
 
   zero(): ViewValues {
-    return { ...createVectorValues("Position", START), ...anglesOf(subtract([0, 0, 0], START), [0, 0, 1]) };
+    return { ...createVectorValues("Position", START_POSITION), ...anglesOf(subtract([0, 0, 0], START_POSITION), [0, 0, 1]) };
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
-    const { left, middle, right, dx, dy } = drag;
-    if (!left && !middle && !right) return {};
+    const { isLeftDown, isMiddleDown, isRightDown, dx, dy } = drag;
+    if (!isLeftDown && !isMiddleDown && !isRightDown) return {};
     switch (this.motionOf(drag)) {
       case "rotate3d":
         return {
@@ -73,20 +74,20 @@ export class FpsController implements ViewController {
     return distance > 0 ? { ...createVectorValues("Position", add(center, camera.back, distance)), ...clip } : this.lookAt(values, center);
   }
 
-  mimic({ camera }: Look): ViewValues {
+  mimic({ camera }: PreviousView): ViewValues {
     const forward = subtract([0, 0, 0], camera.back);
     return { ...createVectorValues("Position", camera.position), ...anglesOf(forward, camera.up) };
   }
 
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
-    return createVectorValues("Position", transformPointToTarget(transformPointToFixed(readVector(values, "Position", START), oldTarget), newTarget));
+    return createVectorValues("Position", transformPointToTarget(transformPointToFixed(readVector(values, "Position", START_POSITION), oldTarget), newTarget));
   }
 
-  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): FpsMotion {
-    if (left && !shift) return "rotate3d";
-    if (middle || left) return "moveXY";
-    if (right) return "moveZ";
-    return shift ? "moveXY" : "rotate3d";
+  motionOf({ isLeftDown, isMiddleDown, isRightDown, isShiftDown }: DragButtons): FpsMotion {
+    if (isLeftDown && !isShiftDown) return "rotate3d";
+    if (isMiddleDown || isLeftDown) return "moveXY";
+    if (isRightDown) return "moveZ";
+    return isShiftDown ? "moveXY" : "rotate3d";
   }
 
   hintFor(isShiftDown: boolean): MouseHint {
@@ -105,7 +106,7 @@ function anglesOf(forward: Vector, up: Vector): ViewValues {
   const distance = length(forward);
   if (distance === 0) return {};
   const descent = -forward[2] / distance;
-  const [x, y] = Math.abs(descent) > VERTICAL ? [up[0] * descent, up[1] * descent] : forward;
+  const [x, y] = Math.abs(descent) > MIN_VERTICAL_COMPONENT ? [up[0] * descent, up[1] * descent] : forward;
   return {
     Yaw: wrapYaw(Math.atan2(y, x)),
     Pitch: clampPitch(Math.asin(Math.max(-1, Math.min(1, descent)))),

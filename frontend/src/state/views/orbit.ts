@@ -1,4 +1,4 @@
-import { FIELD_OF_VIEW, transformPointToFixed, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { FIELD_OF_VIEW_RAD, transformPointToFixed, transformPointToTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { computeFraming } from "./fit";
 import { add, cross, distanceBetween, length, ORIGIN, scale, type Bounds, type Vector } from "./vector";
 import {
@@ -9,7 +9,8 @@ import {
   createVectorValues,
   wrapYaw,
   type Drag,
-  type Look,
+  type DragButtons,
+  type PreviousView,
   type Motion,
   type MouseHint,
   type ViewController,
@@ -18,14 +19,14 @@ import {
 
 export type OrbitMotion = Extract<Motion, "rotate3d" | "moveXY" | "moveZ" | "zoom">;
 
-const START = { distance: 10, angle: 0.785398 };
-const SMALLEST_DISTANCE = 0.001;
+const START_VALUES = { distance: 10, angle: 0.785398 };
+const MIN_DISTANCE_M = 0.001;
 const ZOOM_PER_PIXEL = 0.1;
 const ZOOM_PER_WHEEL_UNIT = 0.001;
 /** The height at which RViz places an Orbit view that replaces TopDownOrtho, m. */
-const ABOVE_MAP = 100;
+const ABOVE_MAP_HEIGHT_M = 100;
 /** A small horizontal offset from the vertical, which defines the yaw of the view. */
-const HORIZONTAL_OFFSET = 0.0001;
+const HORIZONTAL_OFFSET_M = 0.0001;
 
 /**
  * RViz's Orbit: position = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal
@@ -36,23 +37,23 @@ export class OrbitController implements ViewController {
   readonly focalColor: number = 0xffff00;
 
   computeCamera(values: ViewValues): Camera {
-    const { distance, yaw, pitch, focal } = orbitOf(values);
+    const { distance, yaw, pitch, focal } = readOrbit(values);
     const sign = values["Invert Z Axis"] === true ? -1 : 1;
     const back = computeOrbitDirection(yaw * sign, pitch * sign);
-    const horizontal = Math.hypot(back[0], back[1]);
-    const right: Vector = [(-back[1] * sign) / horizontal, (back[0] * sign) / horizontal, 0];
+    const horizontalLength = Math.hypot(back[0], back[1]);
+    const right: Vector = [(-back[1] * sign) / horizontalLength, (back[0] * sign) / horizontalLength, 0];
     return { position: add(focal, back, distance), right, up: cross(back, right), back, scale: null, focal };
   }
 
   zero(): ViewValues {
-    return { Distance: START.distance, Yaw: START.angle, Pitch: START.angle, ...createVectorValues("Focal Point", ORIGIN) };
+    return { Distance: START_VALUES.distance, Yaw: START_VALUES.angle, Pitch: START_VALUES.angle, ...createVectorValues("Focal Point", ORIGIN) };
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
-    const { distance, yaw, pitch } = orbitOf(values);
+    const { distance, yaw, pitch } = readOrbit(values);
     switch (this.motionOf(drag)) {
       case "rotate3d":
-        if (!drag.left) return {};
+        if (!drag.isLeftDown) return {};
         return {
           Yaw: wrapYaw(yaw - drag.dx * RADIANS_PER_PIXEL),
           Pitch: clampPitch(pitch + drag.dy * RADIANS_PER_PIXEL),
@@ -67,7 +68,7 @@ export class OrbitController implements ViewController {
   }
 
   applyWheel(values: ViewValues, delta: number, isShiftDown: boolean): ViewValues {
-    const { distance } = orbitOf(values);
+    const { distance } = readOrbit(values);
     const amount = delta * ZOOM_PER_WHEEL_UNIT * distance;
     return isShiftDown ? this.dolly(values, -amount) : { Distance: clampDistance(distance - amount) };
   }
@@ -81,9 +82,9 @@ export class OrbitController implements ViewController {
     return { ...createVectorValues("Focal Point", center), ...(distance > 0 ? { Distance: distance } : {}), ...clip };
   }
 
-  mimic({ cls, values, camera }: Look): ViewValues {
+  mimic({ cls, values, camera }: PreviousView): ViewValues {
     if (cls === "rviz_default_plugins/Orbit") {
-      const { distance, focal } = orbitOf(values);
+      const { distance, focal } = readOrbit(values);
       return { ...orbitFrom(focal, camera.position), Distance: distance };
     }
     if (cls === "rviz_default_plugins/TopDownOrtho") return lookFromAbove(camera.position);
@@ -92,16 +93,16 @@ export class OrbitController implements ViewController {
   }
 
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues {
-    const { focal, yaw } = orbitOf(values);
+    const { focal, yaw } = readOrbit(values);
     const yawChange = oldTarget.yaw === newTarget.yaw ? {} : { Yaw: wrapYaw(yaw + oldTarget.yaw - newTarget.yaw) };
     return { ...createVectorValues("Focal Point", transformPointToTarget(transformPointToFixed(focal, oldTarget), newTarget)), ...yawChange };
   }
 
-  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
-    if (left && !shift) return "rotate3d";
-    if (middle || (left && shift)) return "moveXY";
-    if (right) return shift ? "moveZ" : "zoom";
-    return shift ? "moveXY" : "rotate3d";
+  motionOf({ isLeftDown, isMiddleDown, isRightDown, isShiftDown }: DragButtons): OrbitMotion {
+    if (isLeftDown && !isShiftDown) return "rotate3d";
+    if (isMiddleDown || (isLeftDown && isShiftDown)) return "moveXY";
+    if (isRightDown) return isShiftDown ? "moveZ" : "zoom";
+    return isShiftDown ? "moveXY" : "rotate3d";
   }
 
   hintFor(isShiftDown: boolean): MouseHint {
@@ -109,25 +110,25 @@ export class OrbitController implements ViewController {
   }
 
   /** Moves the focal point with the pointer in the camera's plane. */
-  protected pan(values: ViewValues, { dx, dy, height, left, middle }: Drag): ViewValues {
-    if (!left && !middle) return {};
-    const { distance, focal } = orbitOf(values);
-    const metersPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW / 2)) / Math.max(1, height);
+  protected pan(values: ViewValues, { dx, dy, height, isLeftDown, isMiddleDown }: Drag): ViewValues {
+    if (!isLeftDown && !isMiddleDown) return {};
+    const { distance, focal } = readOrbit(values);
+    const metersPerPixel = (2 * distance * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.max(1, height);
     const { right, up } = this.computeCamera(values);
     return createVectorValues("Focal Point", add(add(focal, right, -dx * metersPerPixel), up, dy * metersPerPixel));
   }
 
   /** Moves the camera and the focal point along the line of sight. */
   private dolly(values: ViewValues, amount: number): ViewValues {
-    return createVectorValues("Focal Point", add(orbitOf(values).focal, this.computeCamera(values).back, amount));
+    return createVectorValues("Focal Point", add(readOrbit(values).focal, this.computeCamera(values).back, amount));
   }
 }
 
-export function orbitOf(values: ViewValues): { distance: number; yaw: number; pitch: number; focal: Vector } {
+export function readOrbit(values: ViewValues): { distance: number; yaw: number; pitch: number; focal: Vector } {
   return {
-    distance: clampDistance(readNumber(values, "Distance", START.distance)),
-    yaw: readNumber(values, "Yaw", START.angle),
-    pitch: clampPitch(readNumber(values, "Pitch", START.angle)),
+    distance: clampDistance(readNumber(values, "Distance", START_VALUES.distance)),
+    yaw: readNumber(values, "Yaw", START_VALUES.angle),
+    pitch: clampPitch(readNumber(values, "Pitch", START_VALUES.angle)),
     focal: readVector(values, "Focal Point", ORIGIN),
   };
 }
@@ -146,11 +147,11 @@ export function orbitFrom(focal: Vector, viewpoint: Vector): ViewValues {
 
 /** Returns the values that look straight down at the position of a TopDownOrtho view. */
 export function lookFromAbove([x, y]: Vector): ViewValues {
-  return orbitFrom([x, y, 0], [x, y - HORIZONTAL_OFFSET, ABOVE_MAP]);
+  return orbitFrom([x, y, 0], [x, y - HORIZONTAL_OFFSET_M, ABOVE_MAP_HEIGHT_M]);
 }
 
 function clampDistance(distance: number): number {
-  return Math.max(SMALLEST_DISTANCE, distance);
+  return Math.max(MIN_DISTANCE_M, distance);
 }
 
 /** Returns the unit vector from the focal point to the camera. */

@@ -5,7 +5,8 @@ import {
   readNumber,
   RADIANS_PER_PIXEL,
   type Drag,
-  type Look,
+  type DragButtons,
+  type PreviousView,
   type Motion,
   type MouseHint,
   type ViewController,
@@ -15,9 +16,9 @@ import {
 type MapMotion = Extract<Motion, "rotate2d" | "moveXY" | "zoom">;
 
 const START_SCALE = 10;
-const SMALLEST_SCALE = 0.001;
-const SMALLEST_FACTOR = 0.001;
-const HEIGHT = 500;
+const MIN_SCALE = 0.001;
+const MIN_ZOOM_FACTOR = 0.001;
+const CAMERA_HEIGHT_M = 500;
 const ZOOM_PER_PIXEL = 0.01;
 const ZOOM_PER_WHEEL_UNIT = 0.001;
 
@@ -27,14 +28,14 @@ export class TopDownOrthoController implements ViewController {
   readonly focalColor = 0xffff00;
 
   computeCamera(values: ViewValues): Camera {
-    const scale = scaleOf(values);
+    const scale = readScale(values);
     const angle = readNumber(values, "Angle", 0);
     // A negative scale, which RViz allows by a fast drag, mirrors the view in both directions.
-    const side = Math.sign(scale);
+    const sign = Math.sign(scale);
     return {
-      position: [readNumber(values, "X", 0), readNumber(values, "Y", 0), HEIGHT],
-      right: rotateZ([side, 0, 0], angle),
-      up: rotateZ([0, side, 0], angle),
+      position: [readNumber(values, "X", 0), readNumber(values, "Y", 0), CAMERA_HEIGHT_M],
+      right: rotateZ([sign, 0, 0], angle),
+      up: rotateZ([0, sign, 0], angle),
       back: [0, 0, 1],
       scale: Math.abs(scale),
       focal: null,
@@ -46,9 +47,9 @@ export class TopDownOrthoController implements ViewController {
   }
 
   drag(values: ViewValues, drag: Drag): ViewValues {
-    const { left, middle, right, dx, dy } = drag;
-    if (!left && !middle && !right) return {};
-    const scale = scaleOf(values);
+    const { isLeftDown, isMiddleDown, isRightDown, dx, dy } = drag;
+    if (!isLeftDown && !isMiddleDown && !isRightDown) return {};
+    const scale = readScale(values);
     switch (this.motionOf(drag)) {
       case "rotate2d":
         return { Angle: readNumber(values, "Angle", 0) + dx * RADIANS_PER_PIXEL };
@@ -60,7 +61,7 @@ export class TopDownOrthoController implements ViewController {
   }
 
   applyWheel(values: ViewValues, delta: number): ViewValues {
-    return { Scale: zoomScale(scaleOf(values), 1 + delta * ZOOM_PER_WHEEL_UNIT) };
+    return { Scale: zoomScale(readScale(values), 1 + delta * ZOOM_PER_WHEEL_UNIT) };
   }
 
   lookAt(_values: ViewValues, [x, y]: Vector): ViewValues {
@@ -69,12 +70,12 @@ export class TopDownOrthoController implements ViewController {
 
   fit(values: ViewValues, box: Bounds, size: ViewSize): ViewValues {
     const { center, scale } = computeFraming(this.computeCamera(values), values, box, size);
-    return { X: center[0], Y: center[1], ...(scale > 0 ? { Scale: Math.sign(scaleOf(values)) * scale } : {}) };
+    return { X: center[0], Y: center[1], ...(scale > 0 ? { Scale: Math.sign(readScale(values)) * scale } : {}) };
   }
 
-  mimic({ cls, values, camera }: Look): ViewValues {
+  mimic({ cls, values, camera }: PreviousView): ViewValues {
     if (cls === "rviz_default_plugins/TopDownOrtho") {
-      return { Scale: scaleOf(values), Angle: readNumber(values, "Angle", 0), X: camera.position[0], Y: camera.position[1] };
+      return { Scale: readScale(values), Angle: readNumber(values, "Angle", 0), X: camera.position[0], Y: camera.position[1] };
     }
     const [x, y] = camera.focal ?? camera.position;
     return { X: x, Y: y };
@@ -85,11 +86,11 @@ export class TopDownOrthoController implements ViewController {
     return { X: x, Y: y };
   }
 
-  motionOf({ left, middle, right, shift }: Pick<Drag, "left" | "middle" | "right" | "shift">): MapMotion {
-    if (left && !shift) return "rotate2d";
-    if (middle || left) return "moveXY";
-    if (right) return "zoom";
-    return shift ? "moveXY" : "rotate2d";
+  motionOf({ isLeftDown, isMiddleDown, isRightDown, isShiftDown }: DragButtons): MapMotion {
+    if (isLeftDown && !isShiftDown) return "rotate2d";
+    if (isMiddleDown || isLeftDown) return "moveXY";
+    if (isRightDown) return "zoom";
+    return isShiftDown ? "moveXY" : "rotate2d";
   }
 
   hintFor(isShiftDown: boolean): MouseHint {
@@ -98,16 +99,16 @@ export class TopDownOrthoController implements ViewController {
 }
 
 function zoomScale(scale: number, factor: number): number {
-  return clampScale(scale * Math.max(SMALLEST_FACTOR, factor));
+  return clampScale(scale * Math.max(MIN_ZOOM_FACTOR, factor));
 }
 
-function scaleOf(values: ViewValues): number {
+function readScale(values: ViewValues): number {
   return clampScale(readNumber(values, "Scale", START_SCALE));
 }
 
 /** Keeps the scale away from zero, without changing its sign. */
 function clampScale(scale: number): number {
-  return scale < 0 ? Math.min(-SMALLEST_SCALE, scale) : Math.max(SMALLEST_SCALE, scale);
+  return scale < 0 ? Math.min(-MIN_SCALE, scale) : Math.max(MIN_SCALE, scale);
 }
 
 function shiftValues(values: ViewValues, [x, y]: Vector): ViewValues {

@@ -40,7 +40,7 @@ export function distanceBetween(a: Vector, b: Vector): number {
   return length(subtract(a, b));
 }
 
-export function unit(a: Vector): Vector {
+export function normalize(a: Vector): Vector {
   return scale(a, 1 / (length(a) || 1));
 }
 

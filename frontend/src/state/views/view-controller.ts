@@ -7,16 +7,19 @@ export type ViewValues = Readonly<Record<string, PropertyValue>>;
 
 /** A movement of the mouse in pixels, with its buttons. */
 export interface Drag extends ViewSize {
-  readonly left: boolean;
-  readonly middle: boolean;
-  readonly right: boolean;
-  readonly shift: boolean;
+  readonly isLeftDown: boolean;
+  readonly isMiddleDown: boolean;
+  readonly isRightDown: boolean;
+  readonly isShiftDown: boolean;
   /** The previous position, from the upper left corner. */
   readonly x: number;
   readonly y: number;
   readonly dx: number;
   readonly dy: number;
 }
+
+/** The mouse buttons and the key of a `Drag` that decide on the motion. */
+export type DragButtons = Pick<Drag, "isLeftDown" | "isMiddleDown" | "isRightDown" | "isShiftDown">;
 
 /** The motion of the camera caused by the mouse; each has its own cursor. */
 export type Motion = "rotate3d" | "rotate2d" | "moveXY" | "moveZ" | "zoom";
@@ -25,7 +28,7 @@ export type Motion = "rotate3d" | "rotate2d" | "moveXY" | "moveZ" | "zoom";
 export type MouseHint = "orbit" | "orbitShift" | "groundShift" | "fly" | "flyShift" | "map" | "mapShift";
 
 /** The view to imitate: its class, its values, and its camera in the frame of the new view's target. */
-export interface Look {
+export interface PreviousView {
   readonly cls: string;
   readonly values: ViewValues;
   readonly camera: Camera;
@@ -50,14 +53,14 @@ export interface ViewController {
   /** Fits a box into view from the current direction, in a canvas of this size. */
   fit(values: ViewValues, box: Bounds, size: ViewSize): ViewValues;
   /** Imitates another view, as far as RViz does. */
-  mimic(previous: Look): ViewValues;
+  mimic(previous: PreviousView): ViewValues;
   /** Converts the values to another target frame without moving the camera. */
   retarget(values: ViewValues, oldTarget: Target, newTarget: Target): ViewValues;
-  motionOf(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): Motion;
+  motionOf(drag: DragButtons): Motion;
   hintFor(isShiftDown: boolean): MouseHint;
 }
 
-const PITCH_LIMIT = Math.PI / 2 - 0.001;
+const PITCH_LIMIT_RAD = Math.PI / 2 - 0.001;
 export const RADIANS_PER_PIXEL = 0.005;
 
 export function readNumber(values: ViewValues, name: string, fallback: number): number {
@@ -82,5 +85,5 @@ export function wrapYaw(yaw: number): number {
 }
 
 export function clampPitch(pitch: number): number {
-  return Math.max(-PITCH_LIMIT, Math.min(PITCH_LIMIT, pitch));
+  return Math.max(-PITCH_LIMIT_RAD, Math.min(PITCH_LIMIT_RAD, pitch));
 }

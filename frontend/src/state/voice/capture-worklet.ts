@@ -15,7 +15,7 @@ export interface CaptureMessage {
   /** The seconds of sound lost since the last message. */
   lostSeconds: number;
   /** The number of the request that this answers; all sound until then has been sent. */
-  answers: number | null;
+  answeredRequest: number | null;
 }
 
 /**
@@ -27,7 +27,7 @@ class Capture extends AudioWorkletProcessor {
   private readonly resampler = new Resampler(sampleRate, SOUND_RATE);
   private readonly gaps = new GapFinder(sampleRate);
   private readonly block = new Int16Array(MAX_SAMPLES);
-  private filled = 0;
+  private filledCount = 0;
   private hasBegun = false;
 
   constructor() {
@@ -40,22 +40,22 @@ class Capture extends AudioWorkletProcessor {
       this.hasBegun = true;
       this.send();
     }
-    const [first] = channels;
-    if (!first) return true;
-    const mono = first.map((_, i) => channels.reduce((sum, channel) => sum + (channel[i] ?? 0), 0) / channels.length);
+    const [firstChannel] = channels;
+    if (!firstChannel) return true;
+    const mono = firstChannel.map((_, i) => channels.reduce((sum, channel) => sum + (channel[i] ?? 0), 0) / channels.length);
     this.gaps.add(mono, Date.now());
     for (const sample of toPcm(this.resampler.add(mono))) {
-      this.block[this.filled++] = sample;
-      if (this.filled === MAX_SAMPLES) this.send();
+      this.block[this.filledCount++] = sample;
+      if (this.filledCount === MAX_SAMPLES) this.send();
     }
     return true;
   }
 
-  /** Sends the current part of a block; `answers` is the number of the request for it. */
-  private send(answers: number | null = null): void {
-    const message: CaptureMessage = { samples: this.block.slice(0, this.filled), lostSeconds: this.gaps.takeLost(), answers };
+  /** Sends the current part of a block; `answeredRequest` is the number of the request for it. */
+  private send(answeredRequest: number | null = null): void {
+    const message: CaptureMessage = { samples: this.block.slice(0, this.filledCount), lostSeconds: this.gaps.takeLostSeconds(), answeredRequest };
     this.port.postMessage(message);
-    this.filled = 0;
+    this.filledCount = 0;
   }
 }
 

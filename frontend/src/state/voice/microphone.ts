@@ -110,7 +110,7 @@ export class Microphone {
 
 class InsecureError extends Error {}
 
-const PROBLEMS: Readonly<Record<string, MicrophoneProblem>> = {
+const PROBLEM_BY_ERROR_NAME: Readonly<Record<string, MicrophoneProblem>> = {
   NotAllowedError: "denied",
   SecurityError: "denied",
   NotFoundError: "none",
@@ -121,7 +121,7 @@ const PROBLEMS: Readonly<Record<string, MicrophoneProblem>> = {
 
 function problemOf(error: unknown): MicrophoneProblem {
   if (error instanceof InsecureError) return "insecure";
-  return (error instanceof Error ? PROBLEMS[error.name] : undefined) ?? "failed";
+  return (error instanceof Error ? PROBLEM_BY_ERROR_NAME[error.name] : undefined) ?? "failed";
 }
 
 /** Opens the microphone that the user allows, through an AudioWorklet. */
@@ -148,12 +148,12 @@ async function openBrowserCapture(onBlock: (samples: Int16Array, lostSeconds: nu
     const resolvers = new Map<number, () => void>();
     let requestCount = 0;
     const firstBlock = new Promise<void>((resolve) => {
-      node.port.onmessage = ({ data: { samples, lostSeconds, answers } }: MessageEvent<CaptureMessage>) => {
+      node.port.onmessage = ({ data: { samples, lostSeconds, answeredRequest } }: MessageEvent<CaptureMessage>) => {
         resolve();
         onBlock(samples, lostSeconds);
-        if (answers === null) return;
-        resolvers.get(answers)?.();
-        resolvers.delete(answers);
+        if (answeredRequest === null) return;
+        resolvers.get(answeredRequest)?.();
+        resolvers.delete(answeredRequest);
       };
     });
     context.createMediaStreamSource(stream).connect(node);

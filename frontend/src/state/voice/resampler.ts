@@ -1,7 +1,7 @@
 /** The number of zero crossings of the sinc on each side. */
-const REACH = 16;
+const ZERO_CROSSING_COUNT = 16;
 /** The share of the band that is preserved; the filter needs the rest to roll off. */
-const BAND = 0.92;
+const PASSBAND_SHARE = 0.92;
 
 /**
  * Converts a stream of samples to another sample rate: each output sample is a sum of the input samples around its
@@ -9,18 +9,18 @@ const BAND = 0.92;
  */
 export class Resampler {
   private readonly step: number;
-  private readonly half: number;
+  private readonly halfWidth: number;
   private readonly cutoff: number;
   private bufferedSamples: Float32Array;
-  /** The time of the next output sample, in samples of `buffered`. */
+  /** The time of the next output sample, in samples of `bufferedSamples`. */
   private position: number;
 
   constructor(inputRate: number, outputRate: number) {
     this.step = inputRate / outputRate;
-    this.cutoff = BAND * Math.min(1, outputRate / inputRate);
-    this.half = Math.ceil(REACH / this.cutoff);
-    this.bufferedSamples = new Float32Array(this.half);
-    this.position = this.half;
+    this.cutoff = PASSBAND_SHARE * Math.min(1, outputRate / inputRate);
+    this.halfWidth = Math.ceil(ZERO_CROSSING_COUNT / this.cutoff);
+    this.bufferedSamples = new Float32Array(this.halfWidth);
+    this.position = this.halfWidth;
   }
 
   /** Adds samples of the stream, and returns the output samples that this completes. */
@@ -28,27 +28,27 @@ export class Resampler {
     const buffer = new Float32Array(this.bufferedSamples.length + samples.length);
     buffer.set(this.bufferedSamples);
     buffer.set(samples, this.bufferedSamples.length);
-    const count = Math.max(0, Math.ceil((buffer.length - this.half - this.position) / this.step));
+    const count = Math.max(0, Math.ceil((buffer.length - this.halfWidth - this.position) / this.step));
     const output = new Float32Array(count);
     for (let i = 0; i < count; i++) output[i] = this.sampleAt(buffer, this.position + i * this.step);
-    const next = this.position + count * this.step;
-    const drop = Math.min(buffer.length, Math.max(0, Math.floor(next) - this.half));
-    this.bufferedSamples = buffer.slice(drop);
-    this.position = next - drop;
+    const nextPosition = this.position + count * this.step;
+    const droppedCount = Math.min(buffer.length, Math.max(0, Math.floor(nextPosition) - this.halfWidth));
+    this.bufferedSamples = buffer.slice(droppedCount);
+    this.position = nextPosition - droppedCount;
     return output;
   }
 
   private sampleAt(samples: Float32Array, position: number): number {
-    const first = Math.max(0, Math.ceil(position - this.half));
-    const end = Math.min(samples.length - 1, Math.floor(position + this.half));
+    const firstIndex = Math.max(0, Math.ceil(position - this.halfWidth));
+    const lastIndex = Math.min(samples.length - 1, Math.floor(position + this.halfWidth));
     let sum = 0;
-    for (let i = first; i <= end; i++) sum += (samples[i] ?? 0) * this.weightAt(i - position);
+    for (let i = firstIndex; i <= lastIndex; i++) sum += (samples[i] ?? 0) * this.weightAt(i - position);
     return sum;
   }
 
   private weightAt(distance: number): number {
     const x = Math.PI * this.cutoff * distance;
-    const window = 0.5 + 0.5 * Math.cos((Math.PI * distance) / (this.half + 1));
+    const window = 0.5 + 0.5 * Math.cos((Math.PI * distance) / (this.halfWidth + 1));
     return window * (Math.abs(x) < 1e-9 ? this.cutoff : (this.cutoff * Math.sin(x)) / x);
   }
 }

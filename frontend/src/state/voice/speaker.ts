@@ -8,7 +8,7 @@ export interface SpeakerSettings {
   voice: string;
 }
 
-const SAVED_KEY = "linkwright.speaker.1";
+const STORAGE_KEY = "linkwright.speaker.1";
 
 /** Reads answers aloud with the browser's voices. */
 export class Speaker {
@@ -19,7 +19,7 @@ export class Speaker {
 
   constructor(private readonly storage: TextStorage) {
     try {
-      this.settings = { ...this.settings, ...(JSON.parse(storage.getItem(SAVED_KEY) ?? "{}") as Partial<SpeakerSettings>) };
+      this.settings = { ...this.settings, ...(JSON.parse(storage.getItem(STORAGE_KEY) ?? "{}") as Partial<SpeakerSettings>) };
     } catch {
       // The stored value is invalid.
     }
@@ -42,7 +42,7 @@ export class Speaker {
 
   configure(change: Partial<SpeakerSettings>): void {
     this.settings = { ...this.settings, ...change };
-    this.storage.setItem(SAVED_KEY, JSON.stringify(this.settings));
+    this.storage.setItem(STORAGE_KEY, JSON.stringify(this.settings));
     if (!this.settings.on) this.stopSpeaking();
     this.changed.emit();
   }

@@ -5,14 +5,16 @@ import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 
-/** The time for which the microphone stays open after the button was released, ms: a word may be lost while it opens. */
+/**
+ * The time for which the microphone stays open after the button was released, ms: a word may be lost while it opens.
+ */
 const OPEN_AFTER_USE_MS = 60_000;
-const MAX_HISTORY = 100;
+const MAX_HISTORY_LINES = 100;
 /**
  * The maximum seconds missing in a word. Of synthetic words enrolled with 0.03 s missing, all were recognized; with 0.1
  * s, half.
  */
-const MAX_LOST_SECONDS = 0.03;
+const MAX_LOST_S = 0.03;
 const HEADER_BYTES = 16;
 
 /** A line of the conversation. */
@@ -39,7 +41,7 @@ export function encodeSound(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
 export class VoiceState {
   readonly changed = new Signal();
   /** A line was added to the conversation, or the partial text changed. */
-  readonly conversed = new Signal();
+  readonly conversationChanged = new Signal();
   /** The lines of the conversation, oldest first. */
   readonly history: ConversationLine[] = [];
   /** The text recognized so far of the current utterance. */
@@ -47,7 +49,7 @@ export class VoiceState {
   /** The server's state; null while it is not requested. */
   serverState: ServerState | null = null;
   readonly speaker: Speaker;
-  private readonly watching = new Set<object>();
+  private readonly watchers = new Set<object>();
   private isPressed = false;
   /** Whether the button was released, but the last sound is not sent yet. */
   private isFlushing = false;
@@ -56,10 +58,10 @@ export class VoiceState {
   private mode: TalkMode = "off";
   private timer = 0;
   /** The seconds that the microphone had lost before the current utterance. */
-  private lostBefore = 0;
+  private lostSecondsBefore = 0;
   private isAnswered = false;
   /** The seconds that it had lost up to the last block. */
-  private lostUntil = 0;
+  private lostSecondsUntil = 0;
 
   constructor(
     private readonly connection: Connection,
@@ -103,17 +105,17 @@ export class VoiceState {
   }
 
   /** Whether the page listens all the time. */
-  get isPanelOpen(): boolean {
+  get isAlwaysListening(): boolean {
     return this.isListening;
   }
 
   get isWatched(): boolean {
-    return this.watching.size > 0;
+    return this.watchers.size > 0;
   }
 
   /** Whether too much sound was lost in the current or last utterance or recording. */
   get hasGaps(): boolean {
-    return !this.isListening && this.microphone.lostSeconds - this.lostBefore > MAX_LOST_SECONDS;
+    return !this.isListening && this.microphone.lostSeconds - this.lostSecondsBefore > MAX_LOST_S;
   }
 
   /** Whether the robot has answered since the button was last pressed; in that case it asks for a repetition itself. */
@@ -124,8 +126,8 @@ export class VoiceState {
   /** Starts or stops receiving the conversation for a panel. */
   watch(watcher: object, isWatching: boolean): void {
     const wasWatched = this.isWatched;
-    if (isWatching) this.watching.add(watcher);
-    else this.watching.delete(watcher);
+    if (isWatching) this.watchers.add(watcher);
+    else this.watchers.delete(watcher);
     if (this.isWatched === wasWatched) return;
     if (!this.isWatched) this.serverState = null;
     this.connection.send({ type: "watch_voice", watched: this.isWatched });
@@ -136,7 +138,7 @@ export class VoiceState {
     if (this.isPressed) return;
     this.isPressed = true;
     this.isAnswered = false;
-    this.lostBefore = this.microphone.lostSeconds;
+    this.lostSecondsBefore = this.microphone.lostSeconds;
     this.speaker.stopSpeaking();
     this.watch(this.microphone, true);
     this.openMicrophone();
@@ -156,7 +158,7 @@ export class VoiceState {
   }
 
   /** Listens all the time, or only while the button is held. */
-  setOpen(isOpen: boolean): void {
+  setAlwaysListening(isOpen: boolean): void {
     if (isOpen === this.isListening) return;
     this.isListening = isOpen;
     this.watch(this.microphone, true);
@@ -180,23 +182,23 @@ export class VoiceState {
   }
 
   /**
-   * Opens the microphone for a recording; `hasBegun` is called before the first sound is sent, and cancels the recording
-   * by returning false.
+   * Opens the microphone for a recording; `onBegin` is called before the first sound is sent, and cancels the
+   * recording by returning false.
    */
-  async record(hasBegun: () => boolean): Promise<boolean> {
+  async startRecording(onBegin: () => boolean): Promise<boolean> {
     this.speaker.stopSpeaking();
-    this.setOpen(false);
+    this.setAlwaysListening(false);
     clearTimeout(this.timer);
     const isOpen = await this.microphone.open();
-    this.lostBefore = this.microphone.lostSeconds;
+    this.lostSecondsBefore = this.microphone.lostSeconds;
     this.sendMode();
-    this.isRecordingWord = isOpen && hasBegun();
+    this.isRecordingWord = isOpen && onBegin();
     if (!this.isRecordingWord) this.scheduleClose();
     return this.isRecordingWord;
   }
 
   /** Ends the recording; resolves once its last sound is sent. */
-  async endRecord(): Promise<void> {
+  async endRecording(): Promise<void> {
     await this.microphone.flush();
     this.isRecordingWord = false;
     this.scheduleClose();
@@ -209,7 +211,7 @@ export class VoiceState {
   clear(): void {
     this.history.length = 0;
     this.partial = "";
-    this.conversed.emit();
+    this.conversationChanged.emit();
   }
 
   /** Returns the state for `window.linkwright`. */
@@ -236,13 +238,13 @@ export class VoiceState {
   }
 
   private sendMode(): void {
-    const mode = this.wantedMode;
+    const mode = this.requiredMode;
     if (mode === this.mode) return;
     this.mode = mode;
     this.connection.send({ type: "talk", mode });
   }
 
-  private get wantedMode(): TalkMode {
+  private get requiredMode(): TalkMode {
     if (!this.microphone.isOpen) return "off";
     if (this.isPressed || this.isFlushing) return "held";
     return this.isListening ? "open" : "ready";
@@ -250,8 +252,8 @@ export class VoiceState {
 
   private send(samples: Int16Array): void {
     this.changed.emit();
-    const lostSeconds = this.microphone.lostSeconds - this.lostUntil;
-    this.lostUntil = this.microphone.lostSeconds;
+    const lostSeconds = this.microphone.lostSeconds - this.lostSecondsUntil;
+    this.lostSecondsUntil = this.microphone.lostSeconds;
     if (this.mode !== "held" && this.mode !== "open" && !this.isRecordingWord) return;
     // The page's own speech is not a command.
     if (this.mode === "open" && this.speaker.isSpeaking) return;
@@ -264,9 +266,9 @@ export class VoiceState {
     else {
       if (part === "text") this.partial = "";
       if (text !== "") this.history.push({ part, text });
-      if (this.history.length > MAX_HISTORY) this.history.shift();
+      if (this.history.length > MAX_HISTORY_LINES) this.history.shift();
       if (part === "response") this.speaker.speak(text);
     }
-    this.conversed.emit();
+    this.conversationChanged.emit();
   }
 }

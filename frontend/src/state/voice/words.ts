@@ -4,7 +4,7 @@ import { Signal } from "../../signal";
 import type { VoiceState } from "./voice";
 
 /** The time for which a recording continues after the button was released, ms, because the end of a word is soft. */
-const EXTRA_MS = 300;
+const EXTRA_RECORDING_MS = 300;
 
 /** The words that the user enrolls. */
 export class WordsState {
@@ -49,18 +49,18 @@ export class WordsState {
   }
 
   /** All words, including those without a recording. */
-  get enrolledWords(): readonly EnrolledWord[] {
+  get allWords(): readonly EnrolledWord[] {
     return [...this.words, ...[...this.newWords].map((name) => ({ name, takes: 0 }))];
   }
 
   /** The words still to be recorded at the user's current place. */
   get missingHere(): readonly EnrolledWord[] {
-    return this.enrolledWords.filter(({ name }) => (this.takesHere?.get(name) ?? 0) < this.requiredTakes);
+    return this.allWords.filter(({ name }) => (this.takesHere?.get(name) ?? 0) < this.requiredTakes);
   }
 
   /** Starts or ends enrollment at the user's current place. */
-  enrollHere(hasBegun: boolean): void {
-    this.takesHere = hasBegun ? new Map<string, number>() : null;
+  setEnrollingHere(isEnrolling: boolean): void {
+    this.takesHere = isEnrolling ? new Map<string, number>() : null;
     this.changed.emit();
   }
 
@@ -73,7 +73,7 @@ export class WordsState {
   /** Adds a word to the list, to be recorded. */
   addWord(name: string): void {
     const newWord = name.trim();
-    if (newWord === "" || this.enrolledWords.some((word) => word.name === newWord)) return;
+    if (newWord === "" || this.allWords.some((word) => word.name === newWord)) return;
     this.newWords.add(newWord);
     this.changed.emit();
   }
@@ -84,7 +84,7 @@ export class WordsState {
     this.recording = name;
     this.judgments.delete(name); // later judgments are about this recording
     this.changed.emit();
-    const hasBegun = await this.voice.record(() => {
+    const hasBegun = await this.voice.startRecording(() => {
       if (this.recording === name) this.connection.send({ type: "begin_take", name });
       return this.recording === name;
     });
@@ -100,11 +100,11 @@ export class WordsState {
       return;
     }
     window.setTimeout(() => {
-      void this.voice.endRecord().then(() => {
+      void this.voice.endRecording().then(() => {
         this.connection.send({ type: "end_take", has_gaps: this.voice.hasGaps });
         this.stop();
       });
-    }, EXTRA_MS);
+    }, EXTRA_RECORDING_MS);
   }
 
   remove(name: string): void {
@@ -127,7 +127,7 @@ export class WordsState {
   }
 
   /** Whether the word can be spoken now: its button is held and the microphone is open. */
-  get isHearing(): boolean {
+  get isReadyForSpeech(): boolean {
     return this.recording !== null && this.voice.isRecording;
   }
 

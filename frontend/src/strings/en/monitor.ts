@@ -138,7 +138,7 @@ export const monitor = {
       goal: "Goal",
       eta: "ETA",
       distance: "Distance remaining",
-      taken: "Time taken",
+      elapsed: "Time taken",
       recoveries: "Recoveries",
     },
     states: { unknown: "unknown", inactive: "inactive", active: "active" },

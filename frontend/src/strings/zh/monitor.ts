@@ -139,7 +139,7 @@ export const monitor: Strings["monitor"] = {
       goal: "目标",
       eta: "预计还需",
       distance: "剩余距离",
-      taken: "已用时间",
+      elapsed: "已用时间",
       recoveries: "恢复次数",
     },
     states: { unknown: "未知", inactive: "未激活", active: "已激活" },

@@ -1,41 +1,44 @@
 import { coalesce, h } from "../dom";
 
 /** The number of rows kept ready beyond the visible ones. */
-const OVERSCAN = 8;
+const OVERSCAN_ROWS = 8;
 
-/** A list of any length in which only the visible rows are elements; all rows have the same height. */
-export class VirtualList<T> {
+/**
+ * A list that scrolls to its end as items are added, until the user scrolls up. Only the visible rows, which have the
+ * same height, are elements.
+ */
+export class FollowingList<T> {
   readonly element = h("div", { class: "virtual-list", tabIndex: 0 });
   /** Whether the list scrolls to the end when rows are added. */
   isFollowing = true;
   private readonly rows = h("div", { class: "virtual-rows" });
-  private readonly space = h("div", { class: "virtual-space" }, this.rows);
+  private readonly spacer = h("div", { class: "virtual-space" }, this.rows);
   private items: readonly T[] = [];
-  private first = -1;
-  private last = -1;
-  private readonly draw = coalesce(() => this.fill());
+  private firstIndex = -1;
+  private endIndex = -1;
+  private readonly scheduleRender = coalesce(() => this.renderVisibleRows());
 
   constructor(
     private readonly rowHeight: number,
     private readonly createRow: (item: T, index: number) => HTMLElement,
     private readonly onFollowingChanged: () => void,
   ) {
-    this.element.append(this.space);
+    this.element.append(this.spacer);
     this.element.addEventListener("scroll", () => this.onScroll());
-    new ResizeObserver(() => this.draw()).observe(this.element);
+    new ResizeObserver(() => this.scheduleRender()).observe(this.element);
   }
 
   show(items: readonly T[]): void {
     this.items = items;
-    this.first = -1;
-    this.draw();
+    this.firstIndex = -1;
+    this.scheduleRender();
   }
 
   /** Scrolls to the end and follows it. */
   follow(): void {
     this.isFollowing = true;
     this.onFollowingChanged();
-    this.draw();
+    this.scheduleRender();
   }
 
   private onScroll(): void {
@@ -45,21 +48,21 @@ export class VirtualList<T> {
       this.isFollowing = isAtEnd;
       this.onFollowingChanged();
     }
-    this.fill();
+    this.renderVisibleRows();
   }
 
-  private fill(): void {
+  private renderVisibleRows(): void {
     const { element, items, rowHeight } = this;
     const height = element.clientHeight;
     if (height === 0) return;
     const totalHeight = `${items.length * rowHeight}px`;
-    if (this.space.style.height !== totalHeight) this.space.style.height = totalHeight;
+    if (this.spacer.style.height !== totalHeight) this.spacer.style.height = totalHeight;
     if (this.isFollowing) element.scrollTop = items.length * rowHeight;
-    const first = Math.max(0, Math.floor(element.scrollTop / rowHeight) - OVERSCAN);
-    const last = Math.min(items.length, Math.ceil((element.scrollTop + height) / rowHeight) + OVERSCAN);
-    if (first === this.first && last === this.last) return;
-    [this.first, this.last] = [first, last];
-    this.rows.style.transform = `translateY(${first * rowHeight}px)`;
-    this.rows.replaceChildren(...items.slice(first, last).map((item, index) => this.createRow(item, first + index)));
+    const firstIndex = Math.max(0, Math.floor(element.scrollTop / rowHeight) - OVERSCAN_ROWS);
+    const endIndex = Math.min(items.length, Math.ceil((element.scrollTop + height) / rowHeight) + OVERSCAN_ROWS);
+    if (firstIndex === this.firstIndex && endIndex === this.endIndex) return;
+    [this.firstIndex, this.endIndex] = [firstIndex, endIndex];
+    this.rows.style.transform = `translateY(${firstIndex * rowHeight}px)`;
+    this.rows.replaceChildren(...items.slice(firstIndex, endIndex).map((item, index) => this.createRow(item, firstIndex + index)));
   }
 }

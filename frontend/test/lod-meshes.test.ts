@@ -1,11 +1,11 @@
 import { BoxGeometry, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, SphereGeometry } from "three";
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { beforeAll, describe, expect, it } from "vitest";
-import { PICKABLE } from "../src/scene/layers";
-import { createStandIn, type StandIn, type Triangles } from "../src/scene/meshes/stand-in";
-import type { StandInAnswer, StandInRequest } from "../src/scene/meshes/stand-in-worker";
-import { StandIns, type StandInWorker } from "../src/scene/meshes/stand-ins";
-import { levelsFor, MovingMeshes, type MovingPiece } from "../src/scene/robot/moving-meshes";
+import { PICKABLE_LAYER } from "../src/scene/layers";
+import { createLodMesh, type LodMesh, type Triangles } from "../src/scene/meshes/lod-mesh";
+import type { LodMeshResponse, LodMeshRequest } from "../src/scene/meshes/lod-mesh-worker";
+import { LodMeshes, type LodMeshWorker } from "../src/scene/meshes/lod-meshes";
+import { chooseLevels, MovingMeshes, type MovingPiece } from "../src/scene/robot/moving-meshes";
 
 beforeAll(() => MeshoptSimplifier.ready);
 
@@ -21,8 +21,8 @@ function separateTriangles(geometry: BufferGeometry): Triangles {
   return toTriangles(flatGeometry);
 }
 
-function createDefaultStandIn(mesh: Triangles): StandIn {
-  return createStandIn(mesh, MeshoptSimplifier);
+function createDefaultLodMesh(mesh: Triangles): LodMesh {
+  return createLodMesh(mesh, MeshoptSimplifier);
 }
 
 function viewpointAt(distance: number): { camera: PerspectiveCamera; height: number } {
@@ -33,18 +33,18 @@ function viewpointAt(distance: number): { camera: PerspectiveCamera; height: num
 }
 
 /** A worker that answers when the test tells it to. */
-function createWorker(): { createWorker: StandInWorker; requests: StandInRequest[]; answer: (standIns: StandInAnswer["standIns"]) => void } {
-  const requests: StandInRequest[] = [];
-  const worker: StandInWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
-  const answer = (standIns: StandInAnswer["standIns"]): void => {
-    worker.onmessage?.({ data: { id: requests.at(-1)!.id, standIns } } as MessageEvent<StandInAnswer>);
+function createWorker(): { worker: LodMeshWorker; requests: LodMeshRequest[]; answer: (lodMeshes: LodMeshResponse["lodMeshes"]) => void } {
+  const requests: LodMeshRequest[] = [];
+  const worker: LodMeshWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
+  const answer = (lodMeshes: LodMeshResponse["lodMeshes"]): void => {
+    worker.onmessage?.({ data: { id: requests.at(-1)!.id, lodMeshes } } as MessageEvent<LodMeshResponse>);
   };
-  return { createWorker: worker, requests, answer };
+  return { worker, requests, answer };
 }
 
-describe("a stand-in", () => {
+describe("an LOD mesh", () => {
   it("has fewer triangles at each level, and stays within the error", () => {
-    const { positions, levels } = createDefaultStandIn(separateTriangles(new SphereGeometry(1, 48, 32)));
+    const { positions, levels } = createDefaultLodMesh(separateTriangles(new SphereGeometry(1, 48, 32)));
     expect(levels.length).toBeGreaterThan(3);
     expect(levels[0]?.error).toBe(0);
     for (let i = 1; i < levels.length; i++) {
@@ -63,71 +63,71 @@ describe("a stand-in", () => {
   });
 
   it("merges the vertices of separate triangles, but not across edges", () => {
-    const box = createDefaultStandIn(separateTriangles(new BoxGeometry(1, 1, 1)));
+    const box = createDefaultLodMesh(separateTriangles(new BoxGeometry(1, 1, 1)));
     expect(box.positions.length / 3).toBe(24);
     expect(box.levels[0]?.index.length).toBe(36);
-    const round = createDefaultStandIn(separateTriangles(new SphereGeometry(1, 24, 16)));
+    const round = createDefaultLodMesh(separateTriangles(new SphereGeometry(1, 24, 16)));
     expect(round.positions.length / 3).toBeLessThan(25 * 17);
   });
 
   it("does not exist for a mesh without area", () => {
-    const { levels, sphere } = createDefaultStandIn({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
+    const { levels, boundingSphere: sphere } = createDefaultLodMesh({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
     expect(levels).toEqual([{ error: 0, index: new Uint32Array(0) }]);
     expect(sphere[3]).toBe(0);
   });
 });
 
-describe("stand-ins of meshes", () => {
+describe("LOD meshes of a geometry", () => {
   it("are requested once, one for each group", () => {
-    const { createWorker: worker, requests, answer } = createWorker();
-    const standIns = new StandIns(() => worker);
+    const { worker, requests, answer } = createWorker();
+    const lodMeshes = new LodMeshes(() => worker);
     const geometry = new BoxGeometry(1, 1, 1);
-    expect(standIns.standInsOf(geometry)).toBeNull();
-    expect(standIns.standInsOf(geometry)).toBeNull();
+    expect(lodMeshes.getOrRequest(geometry)).toBeNull();
+    expect(lodMeshes.getOrRequest(geometry)).toBeNull();
     expect(requests).toHaveLength(1);
     expect(requests[0]?.pieces).toHaveLength(6);
     expect(requests[0]?.pieces[0]?.index).toHaveLength(6);
-    const pieceStandIns = requests[0]!.pieces.map((piece) => createStandIn(piece, MeshoptSimplifier));
-    answer(pieceStandIns);
-    expect(standIns.standInsOf(geometry)).toBe(pieceStandIns);
+    const pieceLodMeshes = requests[0]!.pieces.map((piece) => createLodMesh(piece, MeshoptSimplifier));
+    answer(pieceLodMeshes);
+    expect(lodMeshes.getOrRequest(geometry)).toBe(pieceLodMeshes);
   });
 
   it("do not exist if the worker does not run", () => {
-    const { createWorker: worker } = createWorker();
-    const standIns = new StandIns(() => worker);
+    const { worker } = createWorker();
+    const lodMeshes = new LodMeshes(() => worker);
     const geometry = new SphereGeometry();
-    standIns.standInsOf(geometry);
+    lodMeshes.getOrRequest(geometry);
     worker.onerror?.({} as ErrorEvent);
-    expect(standIns.standInsOf(geometry)).toEqual([]);
+    expect(lodMeshes.getOrRequest(geometry)).toEqual([]);
   });
 });
 
 describe("moving meshes", () => {
-  const createBall = (): MovingPiece => ({ standIn: createDefaultStandIn(toTriangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
+  const createBall = (): MovingPiece => ({ lodMesh: createDefaultLodMesh(toTriangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
 
   it("are coarser at a greater distance, and absent outside the view", () => {
     const piece = createBall();
-    const levels = [2, 5, 50, 500].map((distance) => levelsFor([piece], viewpointAt(distance))[0]);
+    const levels = [2, 5, 50, 500].map((distance) => chooseLevels([piece], viewpointAt(distance))[0]);
     expect(levels).toEqual([...levels].sort((a, b) => a! - b!));
     expect(new Set(levels).size).toBeGreaterThan(2);
-    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], viewpointAt(5))).toEqual([null]);
+    expect(chooseLevels([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], viewpointAt(5))).toEqual([null]);
     // From inside nothing is left out.
-    expect(levelsFor([piece], viewpointAt(0.5))).toEqual([0]);
+    expect(chooseLevels([piece], viewpointAt(0.5))).toEqual([0]);
     // A hundred times as large from a hundred times the distance looks the same.
-    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], viewpointAt(500))).toEqual(levelsFor([piece], viewpointAt(5)));
+    expect(chooseLevels([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], viewpointAt(500))).toEqual(chooseLevels([piece], viewpointAt(5)));
   });
 
   it("replace the meshes until the frame is drawn", () => {
     const parent = new Object3D();
     const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial());
     const moving = new MovingMeshes(parent);
-    moving.begin([createBall(), createBall()], [mesh], viewpointAt(50));
+    moving.replaceMeshes([createBall(), createBall()], [mesh], viewpointAt(50));
     expect(moving.drawnCounts.pieces).toBe(2);
     expect(moving.drawnCounts.triangles).toBeLessThan(48 * 32);
     expect(mesh.layers.isEnabled(0)).toBe(false);
-    expect(mesh.layers.isEnabled(PICKABLE)).toBe(true);
+    expect(mesh.layers.isEnabled(PICKABLE_LAYER)).toBe(true);
     expect(parent.children).toHaveLength(1);
-    moving.end();
+    moving.restoreMeshes();
     expect(mesh.layers.isEnabled(0)).toBe(true);
     expect(parent.children).toHaveLength(0);
     moving.dispose();

@@ -2,19 +2,19 @@ import { ShaderMaterial, Vector2, WebGLRenderTarget, type WebGLRenderer } from "
 import { SCREEN_VERTEX, ScreenQuad } from "./objects/screen-quad";
 
 const SAMPLE_COUNT = 4;
-const FRAGMENT = /* glsl */ `
+const FRAGMENT_SHADER = /* glsl */ `
   uniform sampler2D source;
   varying vec2 vUv;
   void main() { gl_FragColor = vec4(texture2D(source, vUv).rgb, 1.0); }
 `;
 
 /** Antialiasing that can be switched off for single frames, unlike the browser's own. */
-export class Smoothing {
+export class Antialiasing {
   private readonly target = new WebGLRenderTarget(1, 1, { samples: SAMPLE_COUNT });
   private readonly quad = new ScreenQuad(
     new ShaderMaterial({
       vertexShader: SCREEN_VERTEX,
-      fragmentShader: FRAGMENT,
+      fragmentShader: FRAGMENT_SHADER,
       uniforms: { source: { value: this.target.texture } },
       depthTest: false,
       depthWrite: false,

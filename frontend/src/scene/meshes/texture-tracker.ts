@@ -4,12 +4,12 @@ import { quoteNames } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
 
 /** A loading manager that tracks the textures a loader requests, and which of them failed. */
-export class TextureWait {
+export class TextureTracker {
   readonly manager: LoadingManager;
   /** The names of files that could not be loaded. */
-  readonly missingUrls: string[] = [];
+  readonly missingNames: string[] = [];
   private pendingCount = 0;
-  private wake: (() => void) | null = null;
+  private resolveWait: (() => void) | null = null;
 
   constructor(files: MeshFiles) {
     const manager = new LoadingManager();
@@ -22,10 +22,10 @@ export class TextureWait {
     manager.itemEnd = (url): void => {
       this.pendingCount -= 1;
       itemEnd(url);
-      if (this.pendingCount === 0) this.wake?.();
+      if (this.pendingCount === 0) this.resolveWait?.();
     };
     manager.itemError = (url): void => {
-      this.missingUrls.push(decodeURIComponent(url.split("/").pop() ?? url));
+      this.missingNames.push(decodeURIComponent(url.split("/").pop() ?? url));
       itemError(url);
     };
     this.manager = manager;
@@ -33,8 +33,8 @@ export class TextureWait {
 
   /** Waits for the textures requested so far; returns a sentence about the missing ones, or null. */
   async settle(): Promise<string | null> {
-    if (this.pendingCount > 0) await new Promise<void>((resolve) => (this.wake = resolve));
-    if (this.missingUrls.length === 0) return null;
-    return strings.meshes.missingTextures(quoteNames(this.missingUrls));
+    if (this.pendingCount > 0) await new Promise<void>((resolve) => (this.resolveWait = resolve));
+    if (this.missingNames.length === 0) return null;
+    return strings.meshes.missingTextures(quoteNames(this.missingNames));
   }
 }
