@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.engine import Checked
 from linkwright.lint.finding import Finding
 from linkwright.lint.known_findings import count_keys, new_findings
 from linkwright.lint.targets import DESCRIPTIONS, Targets
+from linkwright.packages.manifest import MANIFEST
 from linkwright.review.folders import finding_with_package_uris, without_folder
 from linkwright.review.versions import Version, Versions
 
@@ -51,6 +52,45 @@ def find_findings(version: Version, targets: Targets) -> Findings:
     shares = {name: share for name, share in version.shares.items() if not share.is_relative_to(version.root)}
     findings = [finding_with_package_uris(finding, shares) for finding in diagnostics]
     return Findings(findings, frozenset(files), frozenset(errors))
+
+
+def find_findings_singly(
+    sides: Sequence[tuple[Version, Targets]], new_paths: Mapping[str, str]
+) -> tuple[list[Findings], dict[str, Exception]]:
+    """Return the findings of both versions without files and packages whose check fails, and the failures by path.
+
+    A target that fails in one version is left out of both, so that none of its findings is new or fixed.
+
+    Args:
+        sides: both versions with the files and packages to check.
+        new_paths: the new paths of renamed files, by old path.
+    """
+    failures: dict[str, Exception] = {}
+    for version, targets in sides:
+        singles = [
+            *(Targets((file,), ()) for file in targets.files),
+            *(Targets((), (path,)) for path in targets.packages),
+        ]
+        for single in singles:
+            path = _key(version, *single.files, *single.packages, new_paths=new_paths)
+            try:
+                find_findings(version, single)
+            except Exception as error:  # noqa: BLE001 - whatever it is, the other files are checked
+                failures.setdefault(path, error)
+    found = []
+    for version, targets in sides:
+        files, packages = (
+            tuple(path for path in paths if _key(version, path, new_paths=new_paths) not in failures)
+            for paths in (targets.files, targets.packages)
+        )
+        found.append(find_findings(version, Targets(files, packages)))
+    return found, failures
+
+
+def _key(version: Version, path: Path, *, new_paths: Mapping[str, str]) -> str:
+    """Return the new path of a file, or that of the manifest of a package."""
+    relative = version.relative(path / MANIFEST if path.is_dir() else path) or str(path)
+    return new_paths.get(relative, relative) if version.is_old else relative
 
 
 def compare_findings(
