@@ -241,9 +241,15 @@ class _Pair:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=_names_text(added))
             reason = _required_reason(added) if self.file.old_path is not None else None
             yield self._change(text, added[0].span, self.new, reason)
-        if removed:
-            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names_text(removed))
-            yield self._change(text, removed[0].span, self.old, self._removal_reason(removed, old_names))
+        hidden = self.new.names(self.file.new_path).hidden
+        lost = [item for item in removed if item.name not in hidden]
+        if lost:
+            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names_text(lost))
+            yield self._change(text, lost[0].span, self.old, self._removal_reason(lost, old_names))
+        kept = [item for item in removed if item.name in hidden]
+        if kept:
+            text = phrase("{kind} not public any more: {names}", kind=kind.plural, names=_names_text(kept))
+            yield self._change(text, kept[0].span, self.old, self._removal_reason(kept, old_names))
 
     def _removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path

@@ -155,6 +155,8 @@ class _Reader:
         for member in declared_members(self._text):
             end = member.start + len(member.name.rpartition("::")[2])
             self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
+        hidden = (read_declared_functions(self._text, is_public=False), declared_members(self._text, is_public=False))
+        self._names.hidden = frozenset(item.name for items in hidden for item in items)
 
     def _read_call(self, match: re.Match[str]) -> None:
         text, function = self._text, match["name"]

@@ -108,6 +108,7 @@ class SourceNames:
         attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
         undefined_methods: the undefined methods that classes of a source call on themselves, each with
              the location of its first call.
+        hidden: the private and protected members of the classes of a C++ header, with the names of the classes.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
@@ -125,6 +126,7 @@ class SourceNames:
     undefined: dict[str, Span] = field(default_factory=dict)
     attributes: frozenset[str] = frozenset()
     undefined_methods: dict[str, Span] = field(default_factory=dict)
+    hidden: frozenset[str] = frozenset()
     has_star: bool = False
 
     def add(self, name: SourceName) -> None:
