@@ -99,7 +99,8 @@ def compare_findings(
     """Return the findings that only the new version has, and the findings that only the old version has.
 
     A finding in a description that the other version could not read, or that no robot there includes, may be
-    as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file.
+    as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file, and for
+    one about a file that git cannot check out.
 
     Args:
         versions: both versions.
@@ -117,10 +118,17 @@ def compare_findings(
                 own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _invert(names))
             )
             if _is_comparable(finding, version, own, other, other_version, names, changed)
+            and not _names_missing_file(finding, version)
         ]
         for version, own, other, other_version, names in sides
     )
     return _without_moved(added, fixed), _without_moved(fixed, added)
+
+
+def _names_missing_file(finding: Diagnostic, version: Version) -> bool:
+    """Return whether a finding is about a file that git cannot check out, such as one that a partial clone lacks."""
+    missing = () if version.commit is None else version.commit.missing_files
+    return any(path in str(finding.message) for path in missing)
 
 
 def _without_moved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:
