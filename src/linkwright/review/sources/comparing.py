@@ -159,7 +159,7 @@ class _Pair:
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
         is_lacking = self.old.lacks
-        if self.file.old_path is None and kind in COMMUNICATION_KINDS and any(new_names.of_kind(NameKind.NODE)):
+        if self.file.old_path is None and new_names.makes_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
@@ -332,7 +332,7 @@ class _Pair:
     def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changed rates and periods, if both versions have equally many, and all rates of a new node."""
         old_rates, new_rates = old_names.rates, new_names.rates
-        if self.file.old_path is None and new_rates and any(new_names.of_kind(NameKind.NODE)):
+        if self.file.old_path is None and new_rates and new_names.makes_node:
             texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
             yield self._change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
         if len(old_rates) != len(new_rates):

@@ -117,6 +117,7 @@ class _Reader:
             self._read_call(match)
         for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
             for match in pattern.finditer(text):
+                self._names.makes_node = True
                 self._add_argument(kind, match.end() - 1, index)
         for match in _FRAME.finditer(text):
             kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME

@@ -97,6 +97,7 @@ class SourceNames:
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override a function of a base class.
         is_program: whether the source is a program and not a library.
+        makes_node: whether the source makes a node, also one with a computed name.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
         is_error_certain: whether it is a syntax error in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
@@ -117,6 +118,7 @@ class SourceNames:
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False
+    makes_node: bool = False
     error_line: int = 0
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)

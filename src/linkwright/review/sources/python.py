@@ -303,6 +303,7 @@ class _Reader:
         elif (function in _NODES and self._python.text(_call_argument(call, 0, "node_name")) is not None) or (
             function == "__init__" and self._is_node_constructor(call)
         ):
+            self._names.makes_node = True
             self._add(NameKind.NODE, _call_argument(call, 0, "node_name"), None)
         else:
             self._read_other_call(call, function)
