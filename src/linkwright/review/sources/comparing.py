@@ -47,6 +47,8 @@ _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal characters of similar names of the same kind."""
 _MAX_COMPARED = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
+_UNTYPED = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+"""The kinds whose names are not alike because their types are equal."""
 _DECLARED = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -428,7 +430,7 @@ def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) ->
     pairs: list[tuple[SourceName, SourceName]] = []
     if len(removed) == len(added) == 1:
         (old,), (new,) = removed, added
-        has_types = old.kind not in (NameKind.PARAMETER, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+        has_types = old.kind not in _UNTYPED
         is_same = old.type == new.type and (has_types or bool(old.type))
         return [(old, new)] if is_same or _name_similarity(old, new) >= _MIN_SIMILARITY else []
     rest = list(added)
@@ -439,7 +441,8 @@ def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) ->
         same = [
             [candidate for candidate in items if candidate.type == item.type and item.type] for items in (removed, rest)
         ]
-        if item.kind not in (NameKind.PARAMETER, NameKind.MEMBER) and len(same[0]) == len(same[1]) == 1:
+        is_typed = item.kind not in (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.MEMBER)
+        if is_typed and len(same[0]) == len(same[1]) == 1:
             candidates = same[1]
         if candidates:
             best = max(candidates, key=lambda candidate: _name_similarity(item, candidate))

@@ -13,6 +13,7 @@ from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_m
 from linkwright.review.sources.cpp_members import header_texts, made_members
 from linkwright.review.sources.name_patterns import format_of
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.parameter_helpers import helper_calls, is_parameter_name, read_elements
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
 _KINDS = {
@@ -126,6 +127,10 @@ class _Reader:
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
         self._read_members()
+        self._read_helper_calls()
+        for element in read_elements(text):
+            end = element.start + len(element.name)
+            self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for match in _RATE.finditer(text):
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):
@@ -272,6 +277,21 @@ class _Reader:
         for member in made_members(self._text, self._headers):
             for begin, end in list(_argument_offsets(self._text, member.start))[:3]:
                 if self._add_literal(member.kind, begin, end, member.type):
+                    break
+
+    def _read_helper_calls(self) -> None:
+        """Add the parameters that functions of the repository read: the name is one of the first two arguments."""
+        for call in helper_calls(self._text):
+            if call.function in _KINDS:
+                continue
+            kind = NameKind.ELEMENT if call.is_of_plugin else NameKind.PARAMETER
+            arguments = list(_argument_offsets(self._text, call.start))
+            for index, (begin, end) in enumerate(arguments[:2]):
+                literal = _TEXT.fullmatch(self._text[begin:end])
+                if literal is not None and is_parameter_name(literal["text"]):
+                    values = (_LITERAL.fullmatch(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
+                    default = next((value["text"] or value[1] for value in values if value is not None), "")
+                    self._add(kind, literal["text"], begin, end, default)
                     break
 
     def _read_rate(self, match: re.Match[str]) -> None:

@@ -28,6 +28,7 @@ class NameKind(Enum):
     ACTION = (phrase("action"), phrase("actions"))
     ACTION_CLIENT = (phrase("action client"), phrase("action clients"))
     PARAMETER = (phrase("parameter"), phrase("parameters"))
+    ELEMENT = (phrase("parameter of the plugin"), phrase("parameters of the plugin"))
     NODE = (phrase("node"), phrase("nodes"))
     FRAME = (phrase("frame"), phrase("frames"))
     MESSAGE_FRAME = (phrase("frame of messages"), phrase("frames of messages"))

@@ -12,6 +12,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
+from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.python_methods import defined_attributes, undefined_methods
 from linkwright.review.sources.signatures import is_plain, method_signatures, signature_of
@@ -341,6 +342,17 @@ class _Reader:
             self._names.add(SourceName(NameKind.RECONFIGURATION, name, "", self._python.span(call)))
         elif function in ("add_argument", "add_option"):
             self._read_option(call)
+        elif reads_parameter(function):
+            self._read_helper_call(call)
+
+    def _read_helper_call(self, call: ast.Call) -> None:
+        """Add the parameter that a function of the repository reads: the name is one of the first two arguments."""
+        for index, argument in enumerate(call.args[:2]):
+            text = argument.value if isinstance(argument, ast.Constant) else None
+            if isinstance(text, str) and is_parameter_name(text):
+                default = call.args[index + 1] if index + 1 < len(call.args) else argument_of(call, "default")
+                self._add(NameKind.PARAMETER, argument, default)
+                return
 
     def _add_callback(self, kind: NameKind | None, name: ast.expr | None, callback: ast.expr | None) -> None:
         """Add the function that messages, requests, goals or a timer call, if both names are known."""
