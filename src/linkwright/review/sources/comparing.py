@@ -31,6 +31,7 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
+from linkwright.review.sources.shared_constants import users_of_changed_constants
 from linkwright.review.sources.unchanged_sources import user_reason
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
@@ -60,6 +61,7 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     text.
     """
     files = [file for file in changed_files if _is_source(versions, file)]
+    files += [file for file in users_of_changed_constants(versions, files) if _is_source(versions, file)]
     sides = (
         ChangedSources(versions.old, [file.old_path for file in files]),
         ChangedSources(versions.new, [file.new_path for file in files]),

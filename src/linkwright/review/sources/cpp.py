@@ -14,6 +14,7 @@ from linkwright.review.sources.cpp_members import header_texts, made_members
 from linkwright.review.sources.name_patterns import format_of
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.parameter_helpers import helper_calls, is_parameter_name, read_elements
+from linkwright.review.sources.shared_constants import header_constants
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
 _KINDS = {
@@ -311,7 +312,16 @@ class _Reader:
         if literal is not None:
             return literal["text"]
         variable = _VARIABLE.fullmatch(self._text[begin:end])
-        return None if variable is None else self._constants.get(variable["name"])
+        if variable is None or variable["name"] in self._constants:
+            return None if variable is None else self._constants[variable["name"]]
+        return self._shared_constants.get(variable["name"])
+
+    @cached_property
+    def _shared_constants(self) -> Mapping[str, str]:
+        """The constants of included headers that the source does not define otherwise."""
+        constants = header_constants(self._headers)
+        assigned = set(re.findall(r"\b(\w+)\s*(?:\[[^\]]*\]\s*)?(?:=(?!=)|[{(]\s*\")", self._text))
+        return {name: text for name, text in constants.items() if name not in assigned}
 
     def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
         arguments = list(_argument_offsets(self._text, start))

@@ -6,7 +6,7 @@ import ast
 import re
 from collections.abc import Iterator
 from functools import cached_property
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
@@ -15,6 +15,7 @@ from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.python_methods import defined_attributes, undefined_methods
+from linkwright.review.sources.shared_constants import imported_constants
 from linkwright.review.sources.signatures import is_plain, method_signatures, signature_of
 from linkwright.review.sources.undefined_names import bound_names, undefined_names
 
@@ -173,8 +174,20 @@ class _SourceFile(PythonFile):
                 attributes[node.target.attr] = None
         return attributes
 
+    @cached_property
+    def _imported(self) -> dict[str, ast.expr]:
+        return imported_constants(Path(self.source.name), self.tree)
+
+    def assigned_expression(self, name: str) -> ast.expr | None:
+        """Return the expression assigned to a name or imported as it, or None if it is not certain."""
+        if name in self._assignments:
+            return super().assigned_expression(name)
+        return self._imported.get(name)
+
     def resolved(self, node: ast.expr) -> ast.expr:
         """Return the expression that is assigned to a name or attribute, and any other expression unchanged."""
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in self._imported:
+            return self._imported[ast.unparse(node)]
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             value = self._attributes.get(node.attr)
             if node.attr not in self._attributes:
