@@ -66,6 +66,7 @@ from linkwright.review.renamed_packages import match_moved_files, remove_consequ
 from linkwright.review.robots.semantics import semantic_files
 from linkwright.review.sources.callers import broken_callers
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.lost_methods import lost_methods
 from linkwright.review.sources.lost_types import lost_types
 from linkwright.review.versions import Version, Versions
 
@@ -238,6 +239,7 @@ class _Reviewer:
         result = _with_changes(result, self._run_step(broken_callers))
         result = _with_changes(result, self._run_step(lost_arguments))
         result = _with_changes(result, self._run_step(lost_types))
+        result = _with_changes(result, self._run_step(lost_methods))
         result = _with_changes(result, self._run_step(find_lost_controllers))
         result = _with_changes(result, self._run_step(find_lost_data))
         return sorted(result, key=lambda subject: subject.path)
