@@ -80,6 +80,8 @@ OTHERS = {
          ["calls of find_package: 'rclcpp': any version -> any version, optional"], False),
         (AMENT, 'message(WARNING "no rclcpp")', 'message(FATAL_ERROR "no rclcpp")',
          ["errors that stop the build added: 'no rclcpp (if NOT rclcpp_FOUND)'"], True),
+        (AMENT.replace("WARNING", "FATAL_ERROR"), '"no rclcpp"', '"rclcpp is missing"',
+         ["the error 'no rclcpp' has another text: 'rclcpp is missing'"], False),
         (AMENT, "DEPENDENCIES std_msgs", "DEPENDENCIES std_msgs geometry_msgs",
          ["dependencies of interfaces added: 'geometry_msgs'"], False),
         (AMENT, "a.yaml RENAME b.yaml", "a.yaml RENAME e.yaml",

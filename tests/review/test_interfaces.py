@@ -38,17 +38,41 @@ def test_idl_files_outside_of_folders_of_ros_are_compared(repository, compare, o
     assert breaking(result) == ([expected] if is_breaking else [])
 
 
-def test_enum_in_idl_of_another_program_is_not_breaking(repository, compare):
-    repository.commit({"dds/State_t.idl": STATE})
-    repository.write({"dds/State_t.idl": STATE + "enum Mode { A, B };\n"})
-    result = subject(compare(repository), "dds/State_t.idl")
-    assert sentences(result) == []
-    assert "'enum' is not supported" in str(result.problems[0].text)
+ENUM = """module robot {
+enum Mode { OFF, @value(4) DRIVE, BRAKE };
+union Value switch (Mode) {
+  case OFF: long code;
+  case DRIVE: case BRAKE: double speed;
+  default: octet other;
+};
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("BRAKE };", "BRAKE, TURN };", "constant 'robot::Mode.TURN' = 6 added", False),
+        ("OFF, @value", "@value", "constant 'robot::Mode.OFF' removed", True),
+        ("@value(4)", "@value(3)", "constant 'robot::Mode.DRIVE': 4 -> 3", True),
+        ("enum Mode", "enum Modes", "enumeration 'robot::Mode' renamed to 'robot::Modes'", True),
+        ("enum Mode { OFF, @value(4) DRIVE, BRAKE };\n", "", "enumeration 'robot::Mode' removed", True),
+        ("union", "enum Side { LEFT, RIGHT };\nunion", "enumeration 'robot::Side' added: LEFT, RIGHT", False),
+        ("double speed", "float speed", "field 'robot::Value.speed': float64 -> float32", True),
+        ("  default: octet other;\n", "", "field 'robot::Value.other' removed", True),
+    ],
+)
+def test_enumerations_and_unions_in_idl_are_compared(repository, compare, old, new, expected, is_breaking):
+    repository.commit({"dds/Mode.idl": ENUM})
+    repository.write({"dds/Mode.idl": ENUM.replace(old, new)})
+    result = compare(repository)
+    assert expected in sentences(subject(result, "dds/Mode.idl"))
+    assert (expected in breaking(result)) == is_breaking
 
 
 def test_other_idl_files_that_cannot_be_parsed_are_not_compared(repository, compare):
-    repository.commit({"dds/Mode.idl": "enum Mode { A, B };\n"})
-    repository.write({"dds/Mode.idl": "enum Mode { A, B, C };\n"})
+    repository.commit({"dds/Mode.idl": "bitmask Mode { A, B };\n"})
+    repository.write({"dds/Mode.idl": "bitmask Mode { A, B, C };\n"})
     (problem,) = subject(compare(repository), "dds/Mode.idl").problems
     assert str(problem.text).startswith("neither version can be read")
 

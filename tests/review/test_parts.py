@@ -235,6 +235,14 @@ def test_world_with_xacro_is_compared_as_it_is_written(library, compare):
     assert sentences(subject(compare(library), path)) == ["world hall wind added: linear_velocity 1 0 0"]
 
 
+def test_a_renamed_world_in_xacro_is_breaking(library, compare):
+    path = "arm_description/worlds/hall.world.xacro"
+    text = '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro"><world name="{}"><wind/></world></sdf>'
+    library.commit({path: text.format("hall")})
+    library.write({path: text.format("yard")})
+    assert breaking(compare(library)) == ["world yard name: hall -> yard"]
+
+
 def test_handed_on_parameter_is_reported_once(library, compare):
     text = GRIPPER.replace('<link name="${name}_tip"/>', '<xacro:tip name="${name}"/>')
     library.commit({TOOL: text})

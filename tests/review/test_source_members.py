@@ -120,7 +120,7 @@ HEADER_PACKAGE = {
     [
         ("center", "middle", "public member 'Link::center' (double) renamed to 'Link::middle' (double)", True),
         ("  std::vector<int> sizes;\nprivate:\n", "private:\n  std::vector<int> sizes;\n",
-         "public members removed: 'Link::sizes' (std::vector<int>)", True),
+         "public members not public any more: 'Link::sizes' (std::vector<int>)", True),
         (", rate = 2.0", "", "public members removed: 'Link::rate' (double)", True),
         ("  double step{0.1};\n", "", "public members removed: 'Link::step' (double)", True),
         ("  double center;\n  double step{0.1};\n  double speed, rate = 2.0;\n  std::vector<int> sizes;\n",
@@ -143,6 +143,15 @@ def test_private_members_of_installed_classes_are_no_interface(repository, compa
     repository.commit({**HEADER_PACKAGE, path: POINT_HEADER})
     repository.write({path: POINT_HEADER.replace("count_", "number_")})
     assert breaking(compare(repository)) == []
+
+
+def test_a_deleted_assignment_is_no_member(repository, compare):
+    path = "arm/include/arm/point.hpp"
+    repository.commit({**HEADER_PACKAGE, path: POINT_HEADER})
+    deleted = "public:\n  Link & operator=(const Link &) = delete;\n"
+    repository.write({path: POINT_HEADER.replace("public:\n", deleted)})
+    result = compare(repository)
+    assert "operator" not in " ".join(str(change.sentence) for item in result.subjects for change in item.changes)
 
 
 @pytest.mark.parametrize(

@@ -91,3 +91,18 @@ def test_a_publisher_that_moves_to_a_changed_source_is_no_change(repository, com
         }
     )
     assert breaking(compare(repository)) == []
+
+
+NODE = """#include <rclcpp_lifecycle/lifecycle_node.hpp>
+Driver::Driver(const std::string& name) : rclcpp_lifecycle::LifecycleNode(name) {
+  scan_ = create_publisher<LaserScan>("scan", 1);
+  declare_parameter<int>("port", 0);
+}
+"""
+
+
+def test_an_added_node_with_a_computed_name_has_its_topics_and_parameters_told(repository, compare):
+    repository.commit({"arm/package.xml": FILES["arm/package.xml"], "arm/src/driver.cpp": NODE})
+    repository.write({"arm/src/life_cycle_driver.cpp": NODE})
+    found = sentences(subject(compare(repository), "arm/src/life_cycle_driver.cpp"))
+    assert found == ["publishers added: 'scan' (LaserScan)", "parameters added: 'port' (0)"]

@@ -227,6 +227,17 @@ def test_missing_file_of_partial_clone_is_a_problem_of_that_file_only(package, c
     assert "git cannot check out one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
 
 
+def test_a_file_that_git_cannot_check_out_is_not_a_new_finding(package, compare):
+    mesh = package.commit({"arm_description/meshes/a.stl": b"solid a\nendsolid a\n" * 1000})
+    visual = '<visual><geometry><mesh filename="package://arm_description/meshes/a.stl"/></geometry></visual>'
+    package.commit({"arm_description/urdf/tool.urdf": f'<robot name="t"><link name="t">{visual}</link></robot>'})
+    blob = package.git("rev-parse", f"{mesh}:arm_description/meshes/a.stl")
+    (package.root / ".git/objects" / blob[:2] / blob[2:]).unlink()
+    (package.root / "arm_description/meshes/a.stl").write_bytes(b"")
+    found = compare(package, "HEAD~1..HEAD").new_findings
+    assert [str(finding.message) for finding in found] == []
+
+
 def test_new_and_fixed_findings_are_reported(package, compare):
     package.commit({"arm_description/urdf/segment.xacro": MACRO.replace('velocity="1"', 'velocity="0"')})
     text = MACRO.replace('mass value="2"', 'mass value="-1"')

@@ -118,3 +118,8 @@ def plugin_name_reason(difference: Difference) -> Phrase | None:
     if difference.old and NAME_TAGS.search(tag) and not is_same:
         return name_reason(used_name(difference.old))
     return None
+
+
+def world_reason(name: str) -> Phrase:
+    """Return the reason why removing or renaming a world is breaking."""
+    return phrase("programs that use the topics and services of the world '{name}' do not find them", name=name)

@@ -160,11 +160,13 @@ class Problem:
         text: the reason in one line.
         is_of_old: whether only the old version has the problem, so that the new version solves it.
         is_of_both: whether neither version can be read.
+        is_bug: whether a bug in Linkwright is the reason, not the file.
     """
 
     text: Phrase
     is_of_old: bool = False
     is_of_both: bool = False
+    is_bug: bool = False
 
 
 def nesting_problem() -> Problem:

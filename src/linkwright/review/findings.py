@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.engine import Checked
 from linkwright.lint.finding import Finding
 from linkwright.lint.known_findings import count_keys, new_findings
 from linkwright.lint.targets import DESCRIPTIONS, Targets
+from linkwright.packages.manifest import MANIFEST
 from linkwright.review.folders import finding_with_package_uris, without_folder
 from linkwright.review.versions import Version, Versions
 
@@ -53,13 +54,53 @@ def find_findings(version: Version, targets: Targets) -> Findings:
     return Findings(findings, frozenset(files), frozenset(errors))
 
 
+def find_findings_singly(
+    sides: Sequence[tuple[Version, Targets]], new_paths: Mapping[str, str]
+) -> tuple[list[Findings], dict[str, Exception]]:
+    """Return the findings of both versions without files and packages whose check fails, and the failures by path.
+
+    A target that fails in one version is left out of both, so that none of its findings is new or fixed.
+
+    Args:
+        sides: both versions with the files and packages to check.
+        new_paths: the new paths of renamed files, by old path.
+    """
+    failures: dict[str, Exception] = {}
+    for version, targets in sides:
+        singles = [
+            *(Targets((file,), ()) for file in targets.files),
+            *(Targets((), (path,)) for path in targets.packages),
+        ]
+        for single in singles:
+            path = _key(version, *single.files, *single.packages, new_paths=new_paths)
+            try:
+                find_findings(version, single)
+            except Exception as error:  # noqa: BLE001 - whatever it is, the other files are checked
+                failures.setdefault(path, error)
+    found = []
+    for version, targets in sides:
+        files, packages = (
+            tuple(path for path in paths if _key(version, path, new_paths=new_paths) not in failures)
+            for paths in (targets.files, targets.packages)
+        )
+        found.append(find_findings(version, Targets(files, packages)))
+    return found, failures
+
+
+def _key(version: Version, path: Path, *, new_paths: Mapping[str, str]) -> str:
+    """Return the new path of a file, or that of the manifest of a package."""
+    relative = version.relative(path / MANIFEST if path.is_dir() else path) or str(path)
+    return new_paths.get(relative, relative) if version.is_old else relative
+
+
 def compare_findings(
     versions: Versions, old: Findings, new: Findings, new_paths: Mapping[str, str]
 ) -> tuple[list[Diagnostic], list[Diagnostic]]:
     """Return the findings that only the new version has, and the findings that only the old version has.
 
     A finding in a description that the other version could not read, or that no robot there includes, may be
-    as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file.
+    as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file, and for
+    one about a file that git cannot check out.
 
     Args:
         versions: both versions.
@@ -77,10 +118,17 @@ def compare_findings(
                 own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _invert(names))
             )
             if _is_comparable(finding, version, own, other, other_version, names, changed)
+            and not _names_missing_file(finding, version)
         ]
         for version, own, other, other_version, names in sides
     )
     return _without_moved(added, fixed), _without_moved(fixed, added)
+
+
+def _names_missing_file(finding: Diagnostic, version: Version) -> bool:
+    """Return whether a finding is about a file that git cannot check out, such as one that a partial clone lacks."""
+    missing = () if version.commit is None else version.commit.missing_files
+    return any(path in str(finding.message) for path in missing)
 
 
 def _without_moved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:

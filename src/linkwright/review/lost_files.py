@@ -12,7 +12,7 @@ from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_
 from linkwright.review.installed_paths import build_file, package_facts, python_packages
 from linkwright.review.kinds import rule_of
 from linkwright.review.renamed_packages import find_renamed_packages
-from linkwright.review.sources.reading import read_source_names
+from linkwright.review.sources.reading import is_generated, read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _HEADERS = "include/"
@@ -89,20 +89,22 @@ def _lost_modules(versions: Versions, files: Sequence[ChangedFile], old: BuildFa
         module = _module_name(old, file.old_path or "", packages)
         if module is None:
             continue
-        is_program = read_source_names(versions.old.file(file.old_path or "")).is_program
+        is_kept = read_source_names(versions.old.file(file.old_path or "")).is_program
+        is_kept = is_kept or (file.new_path is None and is_generated(versions.old.text(file.old_path or "")))
         new_module = None if file.new_path is None else _module_name(old, file.new_path, packages)
         if new_module is None:
-            removed.setdefault(is_program, []).append(module)
+            removed.setdefault(is_kept, []).append(module)
         elif new_module != module:
             text = phrase("Python module '{old}' renamed to '{new}'", old=module, new=new_module)
-            yield _module_change(text, is_program=is_program)
-    for is_program, names in removed.items():
+            yield _module_change(text, is_kept=is_kept)
+    for is_kept, names in removed.items():
         text = phrase("{kind} removed: {names}", kind=FactKind.MODULE.title, names=list_names(names))
-        yield _module_change(text, is_program=is_program)
+        yield _module_change(text, is_kept=is_kept)
 
 
-def _module_change(text: Phrase, *, is_program: bool) -> Change:
-    return Change(text) if is_program else Change(text, Effect.BREAKING, FactKind.MODULE.reason)
+def _module_change(text: Phrase, *, is_kept: bool) -> Change:
+    """Return the change of a module. It is not breaking for a program, or if the build generates it."""
+    return Change(text) if is_kept else Change(text, Effect.BREAKING, FactKind.MODULE.reason)
 
 
 def _module_name(facts: BuildFacts, path: str, packages: Collection[str]) -> str | None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, partial
 from multiprocessing import get_context
 from pathlib import PurePosixPath
-from typing import Any
+from typing import Any, TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
@@ -24,21 +24,18 @@ from linkwright.review.changes import (
     Review,
     Subject,
     SubjectKind,
-    ViewImages,
-    nesting_problem,
 )
-from linkwright.review.drawings.images import lone_images
-from linkwright.review.drawings.scene_images import lone_world_images
-from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
+from linkwright.review.failures import Failures
+from linkwright.review.file_comparison import compare_file
+from linkwright.review.file_pair import Drawings
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import is_map, map_of_image
 from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
 from linkwright.review.files.templates import is_template
-from linkwright.review.findings import compare_findings, find_findings
+from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
 from linkwright.review.folders import review_without_folder
-from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import (
     LAUNCH_FILE,
     LAUNCH_HELPER,
@@ -48,7 +45,6 @@ from linkwright.review.kinds import (
     KindRule,
     may_help_launch_files,
     rule_of,
-    rule_of_contents,
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import makes_actions
@@ -67,15 +63,16 @@ from linkwright.review.parts import compare_parts
 from linkwright.review.references import find_lost_references
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
-from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
 from linkwright.review.robots.semantics import semantic_files
 from linkwright.review.sources.callers import broken_callers
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.lost_methods import lost_methods
 from linkwright.review.sources.lost_types import lost_types
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
+_Found = TypeVar("_Found")
 _MIN_EXPANDED = 4
 """The minimum number of descriptions that are compared by several processes."""
 _LISTED = (
@@ -135,7 +132,12 @@ class _Reviewer:
         self._new_paths = {
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path
         }
-        self._maps = dict(_find_maps_of_images(versions, self._changed_files))
+        self._failures = Failures()
+        self._maps = dict(self._run_step(_find_maps_of_images))
+
+    def _run_step(self, step: Callable[[Versions, Sequence[ChangedFile]], Iterable[_Found]]) -> list[_Found]:
+        """Return the results of a step for the changed files. Files with which it fails get a problem."""
+        return self._failures.run_step(step, self._versions, self._changed_files)
 
     @cached_property
     def _complete_paths(self) -> dict[bool, set[str]]:
@@ -147,13 +149,14 @@ class _Reviewer:
         pairs = list(self._pairs())
         expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED]
         with _process_pool(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
-            subjects = [submit(_compare, self._versions, *pair, self._drawings) for pair in pairs]
+            subjects = [submit(compare_file, self._versions, *pair, self._drawings) for pair in pairs]
             findings = [
                 submit(find_findings, version, self._check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
             ]
-            old_findings, new_findings = (result() for result in findings)
             all_subjects = self._with_other_subjects([result() for result in subjects])
+            old_findings, new_findings = self._findings(findings, expanded)
+        all_subjects = self._with_failures(all_subjects)
         all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
         moved = {subject.path: subject.changes[0].sentence for subject in all_subjects if _is_only_moved(subject)}
         all_subjects = [subject for subject in all_subjects if subject.path not in moved]
@@ -178,30 +181,67 @@ class _Reviewer:
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
             list(
                 dict.fromkeys(
-                    [*notes, *self._notes(), *missing_notes(all_subjects), *equal_notes, *unreadable_notes(untouched)]
+                    [
+                        *(*notes, *self._notes(), *missing_notes(all_subjects), *equal_notes),
+                        *(*unreadable_notes(untouched), *self._failures.notes),
+                    ]
                 )
             ),
         )
 
+    def _findings(
+        self, results: Sequence[Callable[[], Findings]], expanded: Sequence[_Pair]
+    ) -> tuple[Findings, Findings]:
+        """Return the findings of both versions. Files and packages whose check fails are left out of both."""
+        try:
+            old, new = (result() for result in results)
+        except Exception:  # noqa: BLE001 - whatever it is, the other files are checked
+            sides = [
+                (version, self._check_targets(version, expanded))
+                for version in (self._versions.old, self._versions.new)
+            ]
+            nothing = Findings([], frozenset(), frozenset())
+            no_failures: dict[str, Exception] = {}
+            (old, new), failures = self._failures.attempt(
+                lambda: find_findings_singly(sides, self._new_paths), ([nothing, nothing], no_failures)
+            )
+            for path, error in failures.items():
+                self._failures.add_missing_findings(path, error)
+        return old, new
+
+    def _with_failures(self, subjects: Sequence[Subject]) -> list[Subject]:
+        """Return the subjects, with a problem for each file that could not be compared."""
+        result = {subject.path: subject for subject in subjects}
+        changed = {file.path: file for file in self._changed_files}
+        for path, problem in self._failures.problems.items():
+            rule = rule_of(path)
+            file = changed.get(path, ChangedFile(path, path))
+            kind = SubjectKind.SOURCE if rule is None else rule.kind
+            subject = result.get(path, Subject(kind, path, file.old_path, file.new_path))
+            if not any(other.is_bug for other in subject.problems):
+                result[path] = replace(subject, problems=[*subject.problems, problem])
+        return sorted(result.values(), key=lambda subject: subject.path)
+
     def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
         """Return the subjects, with changes about broken paths, and subjects for plugin descriptions and sources."""
         lost: dict[str, list[Change]] = {}
-        for path, change in find_lost_references(self._versions, self._changed_files):
+        for path, change in self._run_step(find_lost_references):
             lost.setdefault(path, []).append(change)
         result = [replace(subject, changes=[*subject.changes, *lost.pop(subject.path, ())]) for subject in subjects]
-        result = _with_changes(result, find_lost_files(self._versions, self._changed_files))
+        result = _with_changes(result, self._run_step(find_lost_files))
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
-        result += plugin_subjects(self._versions, self._changed_files)
+        result += self._run_step(plugin_subjects)
         result += self._removed_submodules()
-        result += rosbuild_subjects(self._versions, self._changed_files)
+        result += self._run_step(rosbuild_subjects)
         paths = {subject.path for subject in result}
-        result += (found for found in source_subjects(self._versions, self._changed_files) if found.path not in paths)
-        result = _with_changes(result, broken_callers(self._versions, self._changed_files))
-        result = _with_changes(result, lost_arguments(self._versions, self._changed_files))
-        result = _with_changes(result, lost_types(self._versions, self._changed_files))
-        result = _with_changes(result, find_lost_controllers(self._versions, self._changed_files))
-        result = _with_changes(result, find_lost_data(self._versions, self._changed_files))
+        result += (found for found in self._run_step(source_subjects) if found.path not in paths)
+        result = _with_changes(result, self._run_step(broken_callers))
+        result = _with_changes(result, self._run_step(lost_arguments))
+        result = _with_changes(result, self._run_step(lost_types))
+        result = _with_changes(result, self._run_step(lost_methods))
+        result = _with_changes(result, self._run_step(find_lost_controllers))
+        result = _with_changes(result, self._run_step(find_lost_data))
         return sorted(result, key=lambda subject: subject.path)
 
     def _removed_submodules(self) -> Iterator[Subject]:
@@ -236,7 +276,11 @@ class _Reviewer:
         paths: set[tuple[str | None, str | None]] = {(path, self._new_path(path)) for path in affected_old}
         paths |= {(self._old_path(path), path) for path in affected_new}
         for file in self._changed_files:
-            rule = self._rule_for(file.old_path, file.new_path)
+            try:
+                rule = self._rule_for(file.old_path, file.new_path)
+            except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
+                self._failures.add(file.path, error)
+                continue
             if file.path in self._maps:
                 paths.add((self._old_path(self._maps[file.path]), self._new_path(self._maps[file.path])))
                 continue
@@ -245,7 +289,8 @@ class _Reviewer:
             if self._is_part_of_a_robot(rule, file):
                 paths.add(self._package_build_file(file) or (file.old_path, file.new_path))
         for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
-            rule = self._rule_for(old_path, new_path)
+            path = new_path or old_path or ""
+            rule = None if path in self._failures.problems else self._rule_for(old_path, new_path)
             if rule is not None:
                 yield rule, old_path, new_path
 
@@ -296,6 +341,9 @@ class _Reviewer:
         if not changed:
             yield from (set(), set())
             return
+        yield from self._failures.attempt(lambda: list(self._affected_by(changed)), [set[str](), set[str]()])
+
+    def _affected_by(self, changed: set[str]) -> Iterator[set[str]]:
         files = None
         for version in (self._versions.old, self._versions.new):
             files = TextFiles(version.root, files, changed)
@@ -355,101 +403,13 @@ class _Reviewer:
                 )
 
 
-def _compare(
-    versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None, drawings: Drawings
-) -> Subject:
-    """Compare a file in both versions.
-
-    Args:
-        versions: both versions of the repository.
-        rule: the rule for the file.
-        old_path: the path in the old version; None for an added file.
-        new_path: the path in the new version; None for a removed file.
-        drawings: the kinds of drawings of robots that look different.
-    """
-    kind, path = rule.kind, new_path or old_path or ""
-    effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
-    if old_path is None or new_path is None:
-        rule = rule_of_contents(rule, versions.old if new_path is None else versions.new, path)
-        if new_path is None:
-            text = _text_with_contents(rule, rule.removed, versions.old, path) if rule.shows_removed else rule.removed
-            version, change = versions.old, Change(text, effect, rule.removal_reason)
-        else:
-            version, change = versions.new, Change(_text_with_contents(rule, rule.added, versions.new, path))
-        if rule.needs_contents and "items" not in change.sentence.arguments:
-            return Subject(kind, path, old_path, new_path)
-        changes, images = _lone_contents(version, kind, path, drawings)
-        return Subject(kind, path, old_path, new_path, [change, *changes], images=images)
-    pair = FilePair(versions, old_path, new_path, drawings)
-    if old_path != new_path:
-        pair.changes.append(_renaming_change(versions, rule, old_path, new_path))
-    try:
-        rule.compare(pair)
-    except LinkwrightError as error:
-        pair.add_problem(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
-    except (RecursionError, MemoryError):
-        pair.problems.append(nesting_problem())
-    return Subject(
-        kind,
-        path,
-        old_path,
-        new_path,
-        pair.changes,
-        pair.figures,
-        pair.problems,
-        pair.cases,
-        pair.images,
-        scene=pair.scene,
-        expanded=pair.expanded,
-        missing=tuple(pair.missing),
-        is_lost=pair.is_lost,
-    )
-
-
-def _renaming_change(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:
-    """Return the change that reports a renamed or moved file."""
-    old, new = PurePosixPath(old_path), PurePosixPath(new_path)
-    if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
-        text = phrase("moved from {folder}, installed at the same place", folder=f"{old.parent}/")
-        return Change(text, path_change=PathChange.MOVED)
-    if rule.kind is SubjectKind.INTERFACE and keeps_type(versions, old_path, new_path):
-        text = phrase("moved from {folder}, the type keeps its name", folder=f"{old.parent}/")
-        return Change(text, path_change=PathChange.MOVED)
-    effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
-    text = phrase("renamed from {path}", path=old_path)
-    return Change(text, effect, rule.removal_reason, path_change=PathChange.RENAMED)
-
-
-def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
-    """Return the line about an added or removed file, with its contents if they are known."""
-    try:
-        contents = None if rule.contents is None else rule.contents(version, path)
-    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
-        contents = None
-    return text if contents is None else phrase("{change}: {items}", change=text, items=contents)
-
-
-def _lone_contents(
-    version: Version, kind: SubjectKind, path: str, drawings: Drawings
-) -> tuple[list[Change], list[ViewImages]]:
-    """Return the change about the contents of a file that only one version has, and images of it."""
-    if kind is SubjectKind.WORLD:
-        return [], lone_world_images(version, path) if drawings.images else []
-    found = read_lone_robot(version, path) if kind is SubjectKind.DESCRIPTION else None
-    if found is None:
-        return [], []
-    model, robot = found
-    images = lone_images(model, robot, is_old=version.is_old) if drawings.images else []
-    return [Change(robot_text(robot))], images
-
-
 def _is_only_moved(subject: Subject) -> bool:
     """Return whether a file was only moved, and is installed at the same path as before."""
     path_changes = [change.path_change for change in subject.changes]
     return path_changes == [PathChange.MOVED] and not subject.figures and not subject.problems
 
 
-def _with_changes(subjects: Sequence[Subject], changes: Iterator[tuple[str, Change]]) -> list[Subject]:
+def _with_changes(subjects: Sequence[Subject], changes: Iterable[tuple[str, Change]]) -> list[Subject]:
     """Return the subjects with further changes. These may be about files that did not change themselves."""
     result = {subject.path: subject for subject in subjects}
     for path, change in changes:

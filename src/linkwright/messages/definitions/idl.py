@@ -30,7 +30,7 @@ _TOKEN_PATTERN = re.compile(
       | (?P<text>L?"(?:\\.|[^"\\])*" | L?'(?:\\.|[^'\\])*')
       | (?P<number>[-+]?(?:0[xX][0-9a-fA-F]+ | (?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[dDfF]?)
       | (?P<name>[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*)
-      | (?P<mark>::|[{}()<>\[\];,=@])""",
+      | (?P<mark>::|[{}()<>\[\];:,=@])""",
     re.VERBOSE | re.DOTALL,
 )
 _PRIMITIVES = {
@@ -48,6 +48,9 @@ _PRIMITIVES = {
 }
 _UNSUPPORTED_TYPES = {"char", "wchar", "long double", "any", "map", "fixed", "enum", "union", "bitmask", "bitset"}
 _PRIMITIVE_KEYWORDS = {"unsigned", "long", "short", "double"}
+
+ENUMERATION = "enum"
+"""The type of the constants that are the values of an enumeration."""
 
 
 class _Token(NamedTuple):
@@ -76,8 +79,8 @@ def parse_idl_structures(source: SourceText) -> tuple[Structure, ...]:
     """Parse an ``.idl`` file that does not follow the layout of ROS interfaces.
 
     Returns:
-        All structures of the file with their full names, such as ``robot::State``, then an empty structure for each
-        module that only has constants. The types of fields are not checked.
+        All structures and unions of the file with their full names, such as ``robot::State``, then a structure without
+        fields for each enumeration, and for each module that only has constants. The types of fields are not checked.
 
     Raises:
         DefinitionError: MSG114, MSG119 or MSG120, for text that cannot be parsed.
@@ -156,6 +159,10 @@ class _Reader:
                 self._expect(";")
             elif keyword.text == "const":
                 self._constant(scope)
+            elif keyword.text == "enum" and self._known is None:
+                self._read_enumeration(scope)
+            elif keyword.text == "union" and self._known is None:
+                self._read_union(scope)
             else:
                 self._fail(
                     "MSG120",
@@ -178,6 +185,46 @@ class _Reader:
                 if self._now.text != ",":
                     break
                 self._expect(",")
+            self._expect(";")
+        self._expect("}")
+        self._expect(";")
+        self.structures[name] = fields
+
+    def _read_enumeration(self, scope: tuple[str, ...]) -> None:
+        """Parse an enumeration. Its values are constants of the type `ENUMERATION`."""
+        name = "/".join((*scope, self._expect_name().text))
+        values: list[Constant] = []
+        number = 0
+        self._expect("{")
+        while self._now.text != "}":
+            start = self._at
+            self._read_annotations()
+            given = [token.text for token in self._tokens[start : self._at] if token.text.isdigit()]
+            number = int(given[-1]) if given else number
+            values.append(Constant(self._expect_name().text, ENUMERATION, number))
+            number += 1
+            if self._now.text != "}":
+                self._expect(",")
+        self._expect("}")
+        self._expect(";")
+        self.constants[name] = values
+
+    def _read_union(self, scope: tuple[str, ...]) -> None:
+        """Parse a union. Its fields are the discriminator and the members, independent of their cases."""
+        name = "/".join((*scope, self._expect_name().text))
+        self._expect("switch")
+        self._expect("(")
+        fields = [Field("switch", self._type(), None)]
+        self._expect(")")
+        self._expect("{")
+        while self._now.text != "}":
+            while self._now.text in ("case", "default"):
+                if self._next().text == "case":
+                    self._value()
+                self._expect(":")
+            self._read_annotations()
+            field_name, field_type = self._parse_declarator(self._type())
+            fields.append(Field(field_name, field_type, None))
             self._expect(";")
         self._expect("}")
         self._expect(";")

@@ -251,6 +251,8 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
             added, removed = ([fact for fact in facts if fact.name not in installed] for facts in (added, removed))
         _report_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
+        if kind is FactKind.STOP:
+            _report_reworded(pair, removed, added)
         if added:
             reason = None
             if kind is FactKind.STOP:
@@ -287,6 +289,17 @@ def _report_renamed(
             added.remove(new)
             text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
             pair.add(text, pair.location(new.span), kind.reason)
+
+
+def _report_reworded(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
+    """Report the errors that have another text under the same condition, and remove them from both lists."""
+    for old in list(removed):
+        new = next((fact for fact in added if fact.condition == old.condition), None)
+        if new is not None:
+            removed.remove(old)
+            added.remove(new)
+            text = phrase("the error '{old}' has another text: '{new}'", old=old.name, new=new.name)
+            pair.add(text, pair.location(new.span))
 
 
 def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:

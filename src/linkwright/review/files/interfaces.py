@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
-from linkwright.messages.definitions.idl import parse_idl_structures
+from linkwright.messages.definitions.idl import ENUMERATION, parse_idl_structures
 from linkwright.messages.definitions.interfaces import Constant, Field, Structure, structures_of
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
 from linkwright.messages.definitions.parser import SECTIONS
@@ -46,8 +46,16 @@ def compare_interfaces(pair: FilePair) -> None:
         places = _Places(pair, index, new_part.type_name)
         old_part = old.get(renamed.get(name, name), Structure(name, ()))
         if name in renamed:
-            text = phrase("structure '{old}' renamed to '{new}'", old=old_part.type_name, new=new_part.type_name)
+            names = {"old": old_part.type_name, "new": new_part.type_name}
+            text = phrase("structure '{old}' renamed to '{new}'", **names)
+            if _is_enumeration(new_part):
+                text = phrase("enumeration '{old}' renamed to '{new}'", **names)
             pair.add(text, places.first, _use_reason())
+        elif name not in old and _is_enumeration(new_part):
+            values = joined_first([constant.name for constant in new_part.constants], MAX_NAMES)
+            text = phrase("enumeration '{name}' added: {values}", name=new_part.type_name, values=values)
+            pair.add(text, places.first)
+            continue
         elif name not in old and new_part.fields:
             pair.add(phrase("structure '{name}' added", name=new_part.type_name), places.first)
             continue
@@ -55,6 +63,8 @@ def compare_interfaces(pair: FilePair) -> None:
         _compare_constants(pair, old_part.constants, new_part.constants, name, places, is_ros1=is_ros1)
     for name in [name for name in old if name not in new and name not in renamed.values()]:
         text = phrase("structure '{name}' removed", name=old[name].type_name)
+        if _is_enumeration(old[name]):
+            text = phrase("enumeration '{name}' removed", name=old[name].type_name)
         pair.add(text, _Places(pair, 0, old[name].type_name).first_old, _use_reason())
 
 
@@ -92,12 +102,16 @@ def _read(file: Path) -> Mapping[str, Structure]:
 def _renamed_structures(old: Mapping[str, Structure], new: Mapping[str, Structure]) -> dict[str, str]:
     """Return the old names of structures that only have another name, by their new names."""
     renamed: dict[str, str] = {}
-    removed = [name for name in old if name not in new and old[name].fields]
+    removed = [name for name in old if name not in new and (old[name].fields or _is_enumeration(old[name]))]
     for name in [name for name in new if name not in old]:
-        same = [old_name for old_name in removed if old[old_name].fields == new[name].fields]
+        same = [old_name for old_name in removed if old[old_name][1:] == new[name][1:]]
         if len(same) == 1 and same[0] not in renamed.values():
             renamed[name] = same[0]
     return renamed
+
+
+def _is_enumeration(structure: Structure) -> bool:
+    return not structure.fields and any(constant.type == ENUMERATION for constant in structure.constants)
 
 
 def _use_reason() -> Phrase:
@@ -151,7 +165,7 @@ def _numbered_lines(file: Path, index: int, name: str) -> list[tuple[int, str]]:
     """Return the numbered lines of a structure, or those from its start to the end of the file if it is in IDL."""
     lines = list(enumerate(read_source(file).text.splitlines(), 1))
     if file.suffix == _IDL:
-        head = re.compile(rf"\s*struct\s+{re.split('/|::', name)[-1]}\b")
+        head = re.compile(rf"\s*(?:struct|enum|union)\s+{re.split('/|::', name)[-1]}\b")
         first = next((line for line, text in lines if head.match(text)), 1)
         return lines[first - 1 :]
     ends = [number for number, line in lines if line.strip() == _SEPARATOR]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.descriptions.comparison import Difference, ElementComparison
 from linkwright.diagnostics import LinkwrightError, Phrase, joined, phrase
-from linkwright.review.breaking import plugin_name_reason
+from linkwright.review.breaking import plugin_name_reason, world_reason
 from linkwright.review.changes import Change, Location
 from linkwright.review.drawings.scene_images import read_worlds, world_images, world_scenes
 from linkwright.review.element_values import own_content
@@ -244,7 +244,7 @@ def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | 
 
 def _name_reason(tag: str, name: str) -> Phrase:
     if tag == "world":
-        return phrase("programs that use the topics and services of the world '{name}' do not find them", name=name)
+        return world_reason(name)
     if tag in ("link", "frame"):
         return phrase(
             "programs that look up the frame '{name}', and models that attach to it, do not find it", name=name

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind, nesting_problem
+from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind
+from linkwright.review.failures import failure_problem
 from linkwright.review.parts.contents import compare_contents, comparison_of
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.interface import (
@@ -54,8 +55,9 @@ def compare_parts(
         number = indexes.get(file.path)
         try:
             part = comparer.subject(file, is_compared=number is not None)
-        except (RecursionError, MemoryError):
-            part = Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, [], problems=[nesting_problem()])
+        except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
+            problems = [failure_problem(error)]
+            part = Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, [], problems=problems)
         if number is None:
             result.append(part)
         else:

@@ -14,6 +14,7 @@ from linkwright.review.breaking import (
     frame_reason,
     joint_name_reason,
     plugin_name_reason,
+    world_reason,
 )
 from linkwright.review.changes import Change, Effect
 from linkwright.review.element_values import values_text
@@ -269,6 +270,8 @@ class _ReportedDifference:
             if old.tag == "link":
                 return frame_reason(name)
             return joint_name_reason(name) if old.attributes.get("type") in MOVING_TYPES else None
+        if len(difference.path) == 1 and difference.value == "name" and old.tag == "world":
+            return world_reason(old.attributes.get("name", ""))
         if len(difference.path) == 1 and is_gone and old.tag in ("group", "group_state", "end_effector"):
             return removal_reason(old.tag, old.attributes.get("name", ""))
         kind, name = difference.value, " ".join(difference.path[1:])

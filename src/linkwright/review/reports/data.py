@@ -10,6 +10,7 @@ from linkwright.review.paths import PathComparison
 from linkwright.review.reports.sections import sentence_of
 
 BREAKING_CODE = "REV201"
+FAILURE_CODE = "REV202"
 _DIGITS = 6
 """The digits after the decimal point of times in s and positions in m."""
 
@@ -28,7 +29,7 @@ def as_data(review: Review) -> dict[str, Any]:
 
 
 def as_diagnostics(review: Review) -> list[Diagnostic]:
-    """Return the breaking changes (REV201) and the new findings, for SARIF and annotations of lines."""
+    """Return the breaking changes (REV201), the failed comparisons (REV202) and the new findings, for SARIF."""
     breaking = [
         Diagnostic(
             BREAKING_CODE,
@@ -38,7 +39,13 @@ def as_diagnostics(review: Review) -> list[Diagnostic]:
         )
         for _, change in review.breaking_changes
     ]
-    return [*breaking, *review.new_findings]
+    failed = [
+        Diagnostic(FAILURE_CODE, problem.text, severity=Severity.WARNING, span=Span(subject.path, 1, 1, 1, 1))
+        for subject in review.subjects
+        for problem in subject.problems
+        if problem.is_bug
+    ]
+    return [*breaking, *failed, *review.new_findings]
 
 
 def _location_span(location: Location | None) -> Span | None:
@@ -62,6 +69,7 @@ def _subject_data(subject: Subject) -> dict[str, Any]:
         ],
         "paths": [_paths_data(comparison) for comparison in subject.paths],
         "problems": [str(problem.text) for problem in subject.problems],
+        "is_complete": not any(problem.is_bug for problem in subject.problems),
     }
 
 

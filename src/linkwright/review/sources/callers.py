@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,10 +16,13 @@ from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.package_imports import PACKAGE_FILE
 from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.python_objects import FailingCall, ModuleClasses, classes_of, failing_calls
-from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.reading import is_generated, try_read_source
 from linkwright.review.sources.signatures import Signature, signature_of
 from linkwright.review.sources.undefined_names import bound_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+
+_ADDED_FOLDER = re.compile(r"^\s*sys\.path\.(?:append|insert|extend)\(", re.MULTILINE)
+"""A statement with which a file can import modules of other folders by their names."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +123,8 @@ def _find_lost(versions: Versions, file: ChangedFile) -> _Lost | None:
     if path is None or not path.endswith(PYTHON_SUFFIX) or file.is_submodule:
         return None
     if path != file.new_path:
-        return _Lost(path, is_removed=True)
+        is_built = file.new_path is None and is_generated(versions.old.text(path))
+        return None if is_built else _Lost(path, is_removed=True)
     old, new = (_read_module(version, path) for version in (versions.old, versions.new))
     if old is None or new is None:
         return None
@@ -198,7 +203,13 @@ class _Files:
             return self._single_path(file for file in files if file in self._all_paths)
         beside = (folder / f"{part}{PYTHON_SUFFIX}").as_posix()
         if "/" not in part:
-            return beside if beside in self.paths else None  # a module that is gone may be one of another package
+            if beside in self.paths:
+                return beside
+            if not _ADDED_FOLDER.search(self.version.text(path)):
+                return None  # a module that is gone may be one of another package
+            return self._single_path(
+                file for file in self.paths if PurePosixPath(file).name == f"{part}{PYTHON_SUFFIX}"
+            )
         ends = (f"/{part}{PYTHON_SUFFIX}", f"/{part}/{PACKAGE_FILE}")
         return self._single_path(file for file in self._all_paths if f"/{file}".endswith(ends))
 

@@ -82,6 +82,8 @@ class ChangedSources:
 
     def lacks_in_changed(self, item: SourceName, path: str) -> bool:
         """Return whether no changed source except this one has a name, so that the name has not moved."""
+        if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
+            return False
         others = (names for other, names in self._names.items() if other != path)
         return not any(
             (known.kind, comparison_name(known)) == (item.kind, comparison_name(item))

@@ -31,6 +31,7 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import is_used_by_others, removal_reason
+from linkwright.review.sources.shared_constants import users_of_changed_constants
 from linkwright.review.sources.unchanged_sources import user_reason
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
@@ -47,6 +48,8 @@ _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal characters of similar names of the same kind."""
 _MAX_COMPARED = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
+_UNTYPED = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+"""The kinds whose names are not alike because their types are equal."""
 _DECLARED = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -58,6 +61,7 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     text.
     """
     files = [file for file in changed_files if _is_source(versions, file)]
+    files += [file for file in users_of_changed_constants(versions, files) if _is_source(versions, file)]
     sides = (
         ChangedSources(versions.old, [file.old_path for file in files]),
         ChangedSources(versions.new, [file.new_path for file in files]),
@@ -159,7 +163,7 @@ class _Pair:
         removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
         old_path = self.file.old_path or path
         is_lacking = self.old.lacks
-        if self.file.old_path is None and kind in COMMUNICATION_KINDS and any(new_names.of_kind(NameKind.NODE)):
+        if self.file.old_path is None and new_names.makes_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
         is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
@@ -241,9 +245,15 @@ class _Pair:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=_names_text(added))
             reason = _required_reason(added) if self.file.old_path is not None else None
             yield self._change(text, added[0].span, self.new, reason)
-        if removed:
-            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names_text(removed))
-            yield self._change(text, removed[0].span, self.old, self._removal_reason(removed, old_names))
+        hidden = self.new.names(self.file.new_path).hidden
+        lost = [item for item in removed if item.name not in hidden]
+        if lost:
+            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names_text(lost))
+            yield self._change(text, lost[0].span, self.old, self._removal_reason(lost, old_names))
+        kept = [item for item in removed if item.name in hidden]
+        if kept:
+            text = phrase("{kind} not public any more: {names}", kind=kind.plural, names=_names_text(kept))
+            yield self._change(text, kept[0].span, self.old, self._removal_reason(kept, old_names))
 
     def _removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
@@ -326,7 +336,7 @@ class _Pair:
     def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changed rates and periods, if both versions have equally many, and all rates of a new node."""
         old_rates, new_rates = old_names.rates, new_names.rates
-        if self.file.old_path is None and new_rates and any(new_names.of_kind(NameKind.NODE)):
+        if self.file.old_path is None and new_rates and new_names.makes_node:
             texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
             yield self._change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
         if len(old_rates) != len(new_rates):
@@ -422,7 +432,7 @@ def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) ->
     pairs: list[tuple[SourceName, SourceName]] = []
     if len(removed) == len(added) == 1:
         (old,), (new,) = removed, added
-        has_types = old.kind not in (NameKind.PARAMETER, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+        has_types = old.kind not in _UNTYPED
         is_same = old.type == new.type and (has_types or bool(old.type))
         return [(old, new)] if is_same or _name_similarity(old, new) >= _MIN_SIMILARITY else []
     rest = list(added)
@@ -433,7 +443,8 @@ def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) ->
         same = [
             [candidate for candidate in items if candidate.type == item.type and item.type] for items in (removed, rest)
         ]
-        if item.kind not in (NameKind.PARAMETER, NameKind.MEMBER) and len(same[0]) == len(same[1]) == 1:
+        is_typed = item.kind not in (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.MEMBER)
+        if is_typed and len(same[0]) == len(same[1]) == 1:
             candidates = same[1]
         if candidates:
             best = max(candidates, key=lambda candidate: _name_similarity(item, candidate))

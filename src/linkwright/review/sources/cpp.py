@@ -13,6 +13,8 @@ from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_m
 from linkwright.review.sources.cpp_members import header_texts, made_members
 from linkwright.review.sources.name_patterns import format_of
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.parameter_helpers import helper_calls, is_parameter_name, read_elements
+from linkwright.review.sources.shared_constants import header_constants
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
 _KINDS = {
@@ -117,6 +119,7 @@ class _Reader:
             self._read_call(match)
         for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
             for match in pattern.finditer(text):
+                self._names.makes_node = True
                 self._add_argument(kind, match.end() - 1, index)
         for match in _FRAME.finditer(text):
             kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME
@@ -125,6 +128,10 @@ class _Reader:
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
         self._read_members()
+        self._read_helper_calls()
+        for element in read_elements(text):
+            end = element.start + len(element.name)
+            self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for match in _RATE.finditer(text):
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):
@@ -155,6 +162,8 @@ class _Reader:
         for member in declared_members(self._text):
             end = member.start + len(member.name.rpartition("::")[2])
             self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
+        hidden = (read_declared_functions(self._text, is_public=False), declared_members(self._text, is_public=False))
+        self._names.hidden = frozenset(item.name for items in hidden for item in items)
 
     def _read_call(self, match: re.Match[str]) -> None:
         text, function = self._text, match["name"]
@@ -271,6 +280,21 @@ class _Reader:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break
 
+    def _read_helper_calls(self) -> None:
+        """Add the parameters that functions of the repository read: the name is one of the first two arguments."""
+        for call in helper_calls(self._text):
+            if call.function in _KINDS:
+                continue
+            kind = NameKind.ELEMENT if call.is_of_plugin else NameKind.PARAMETER
+            arguments = list(_argument_offsets(self._text, call.start))
+            for index, (begin, end) in enumerate(arguments[:2]):
+                literal = _TEXT.fullmatch(self._text[begin:end])
+                if literal is not None and is_parameter_name(literal["text"]):
+                    values = (_LITERAL.fullmatch(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
+                    default = next((value["text"] or value[1] for value in values if value is not None), "")
+                    self._add(kind, literal["text"], begin, end, default)
+                    break
+
     def _read_rate(self, match: re.Match[str]) -> None:
         arguments = list(_argument_offsets(self._text, match.end() - 1))
         is_timer = match["name"] == "create_timer"
@@ -288,7 +312,16 @@ class _Reader:
         if literal is not None:
             return literal["text"]
         variable = _VARIABLE.fullmatch(self._text[begin:end])
-        return None if variable is None else self._constants.get(variable["name"])
+        if variable is None or variable["name"] in self._constants:
+            return None if variable is None else self._constants[variable["name"]]
+        return self._shared_constants.get(variable["name"])
+
+    @cached_property
+    def _shared_constants(self) -> Mapping[str, str]:
+        """The constants of included headers that the source does not define otherwise."""
+        constants = header_constants(self._headers)
+        assigned = set(re.findall(r"\b(\w+)\s*(?:\[[^\]]*\]\s*)?(?:=(?!=)|[{(]\s*\")", self._text))
+        return {name: text for name, text in constants.items() if name not in assigned}
 
     def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
         arguments = list(_argument_offsets(self._text, start))

@@ -65,28 +65,30 @@ class DeclaredMember(NamedTuple):
     start: int
 
 
-def read_declared_functions(text: str) -> Iterator[DeclaredFunction]:
-    """Yield the public functions that a header declares.
+def read_declared_functions(text: str, *, is_public: bool = True) -> Iterator[DeclaredFunction]:
+    """Yield the functions that a header declares.
 
     Args:
         text: the text of the header without comments.
+        is_public: whether to yield the public functions, or those that are private or protected.
     """
-    for chunk, classes, start in _public_chunks(text):
+    for chunk, classes, start in _read_chunks(text, is_public=is_public):
         if "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
             yield from _read_function(chunk, classes, start)
 
 
-def declared_members(text: str) -> Iterator[DeclaredMember]:
-    """Yield the public data members of the classes that a header declares.
+def declared_members(text: str, *, is_public: bool = True) -> Iterator[DeclaredMember]:
+    """Yield the data members of the classes that a header declares.
 
     Args:
         text: the text of the header without comments.
+        is_public: whether to yield the public members, or those that are private or protected.
     """
-    for chunk, classes, start in _public_chunks(text):
+    for chunk, classes, start in _read_chunks(text, is_public=is_public):
         declaration = re.sub(r"(?<!:):(?!:)\s*\d+$", "", chunk)
         items = list(_split_parameters(declaration))
         first = _MEMBER.fullmatch(items[0].partition("=")[0].strip()) if items and classes else None
-        if first is None or not _NOT_MEMBERS.isdisjoint(first["type"].split()):
+        if first is None or not _NOT_MEMBERS.isdisjoint((*first["type"].split(), first["name"])):
             continue
         type_name = re.sub(r"\s*([*&<>,:])\s*", r"\1", " ".join(first["type"].split()))
         for item in (first["name"], *(item.partition("=")[0].strip(" \n\t*&") for item in items[1:])):
@@ -96,8 +98,13 @@ def declared_members(text: str) -> Iterator[DeclaredMember]:
                 yield DeclaredMember(name, type_name, start + place.start())
 
 
-def _public_chunks(text: str) -> Iterator[tuple[str, list[str], int]]:
-    """Yield the beginnings of public declarations, each with the names of the classes around it and its offset."""
+def _read_chunks(text: str, *, is_public: bool) -> Iterator[tuple[str, list[str], int]]:
+    """Yield the beginnings of declarations, each with the names of the classes around it and its offset.
+
+    Args:
+        text: the text of the header without comments.
+        is_public: whether to yield the public declarations, or the private and protected ones.
+    """
     text = _PREPROCESSOR.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     scopes: list[_Scope] = []
     start = depth = 0
@@ -113,7 +120,8 @@ def _public_chunks(text: str) -> Iterator[tuple[str, list[str], int]]:
                 scopes[-1] = scopes[-1]._replace(access=access["access"])
                 start = index + 1
             continue
-        if character != "}" and all(scope.is_open and scope.access == "public" for scope in scopes):
+        is_visible = all(scope.access == "public" for scope in scopes)
+        if character != "}" and all(scope.is_open for scope in scopes) and is_visible is is_public:
             yield chunk, [scope.name for scope in scopes if scope.name], start
         if character == "{":
             scopes.append(_read_scope(chunk))

@@ -41,7 +41,7 @@ def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Ph
     if new.kind is NameKind.FUNCTION:
         reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
         yield _function_text(new.name, old.type, new.type), None if _accepts_all(old.type, new.type) else reason
-    elif new.kind in (NameKind.PARAMETER, NameKind.OPTION):
+    elif new.kind in (NameKind.PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
             kind=new.kind.title,

@@ -29,11 +29,11 @@ def lost_types(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iter
         return
     paths = versions.new.paths(CPP_SUFFIXES)
     texts = {path: versions.new.text(path) for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)}
-    codes = {path: _SKIPPED.sub(_blank, text) for path, text in texts.items()}
+    codes = {path: without_comments(text) for path, text in texts.items()}
     for header, names in lost.items():
         declared = _declared(names, codes.values())
         scopes = {match["name"] for match in _SCOPE.finditer(versions.old.text(_old_path(changed_files, header)))}
-        for path in _including(texts, header):
+        for path in including_files(texts, header):
             if {match["name"] for match in _USED_NAMESPACE.finditer(codes[path])} <= scopes | {"std"}:
                 yield from _uses(path, codes[path], header, [name for name in names if name not in declared], scopes)
 
@@ -74,7 +74,7 @@ def _lost(versions: Versions, file: ChangedFile) -> list[str]:
     return sorted(old - new)
 
 
-def _including(texts: Mapping[str, str], header: str) -> list[str]:
+def including_files(texts: Mapping[str, str], header: str) -> list[str]:
     """Return the paths of the files that include a header, also through other headers."""
     found = [header]
     for included in found:
@@ -94,6 +94,11 @@ def _ends_with(path: str, included: str) -> bool:
 def _change(path: str, header: str, name: str, line: int) -> Change:
     text = phrase("uses '{name}', which '{file}' no longer has", name=name, file=header)
     return Change(text, Effect.BREAKING, phrase("the code does not build"), Location(path, line, 1))
+
+
+def without_comments(text: str) -> str:
+    """Return a C++ source with spaces for comments and texts in quotation marks."""
+    return _SKIPPED.sub(_blank, text)
 
 
 def _blank(match: re.Match[str]) -> str:

@@ -28,6 +28,7 @@ class NameKind(Enum):
     ACTION = (phrase("action"), phrase("actions"))
     ACTION_CLIENT = (phrase("action client"), phrase("action clients"))
     PARAMETER = (phrase("parameter"), phrase("parameters"))
+    ELEMENT = (phrase("parameter of the plugin"), phrase("parameters of the plugin"))
     NODE = (phrase("node"), phrase("nodes"))
     FRAME = (phrase("frame"), phrase("frames"))
     MESSAGE_FRAME = (phrase("frame of messages"), phrase("frames of messages"))
@@ -97,6 +98,7 @@ class SourceNames:
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override a function of a base class.
         is_program: whether the source is a program and not a library.
+        makes_node: whether the source makes a node, also one with a computed name.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
         is_error_certain: whether it is a syntax error in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
@@ -108,6 +110,7 @@ class SourceNames:
         attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
         undefined_methods: the undefined methods that classes of a source call on themselves, each with
              the location of its first call.
+        hidden: the private and protected members of the classes of a C++ header, with the names of the classes.
         has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
     """
 
@@ -116,6 +119,7 @@ class SourceNames:
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False
+    makes_node: bool = False
     error_line: int = 0
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
@@ -125,6 +129,7 @@ class SourceNames:
     undefined: dict[str, Span] = field(default_factory=dict)
     attributes: frozenset[str] = frozenset()
     undefined_methods: dict[str, Span] = field(default_factory=dict)
+    hidden: frozenset[str] = frozenset()
     has_star: bool = False
 
     def add(self, name: SourceName) -> None:

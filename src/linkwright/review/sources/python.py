@@ -6,14 +6,16 @@ import ast
 import re
 from collections.abc import Iterator
 from functools import cached_property
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
+from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.python_methods import defined_attributes, undefined_methods
+from linkwright.review.sources.shared_constants import imported_constants
 from linkwright.review.sources.signatures import is_plain, method_signatures, signature_of
 from linkwright.review.sources.undefined_names import bound_names, undefined_names
 
@@ -172,8 +174,20 @@ class _SourceFile(PythonFile):
                 attributes[node.target.attr] = None
         return attributes
 
+    @cached_property
+    def _imported(self) -> dict[str, ast.expr]:
+        return imported_constants(Path(self.source.name), self.tree)
+
+    def assigned_expression(self, name: str) -> ast.expr | None:
+        """Return the expression assigned to a name or imported as it, or None if it is not certain."""
+        if name in self._assignments:
+            return super().assigned_expression(name)
+        return self._imported.get(name)
+
     def resolved(self, node: ast.expr) -> ast.expr:
         """Return the expression that is assigned to a name or attribute, and any other expression unchanged."""
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in self._imported:
+            return self._imported[ast.unparse(node)]
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             value = self._attributes.get(node.attr)
             if node.attr not in self._attributes:
@@ -303,6 +317,7 @@ class _Reader:
         elif (function in _NODES and self._python.text(_call_argument(call, 0, "node_name")) is not None) or (
             function == "__init__" and self._is_node_constructor(call)
         ):
+            self._names.makes_node = True
             self._add(NameKind.NODE, _call_argument(call, 0, "node_name"), None)
         else:
             self._read_other_call(call, function)
@@ -340,6 +355,17 @@ class _Reader:
             self._names.add(SourceName(NameKind.RECONFIGURATION, name, "", self._python.span(call)))
         elif function in ("add_argument", "add_option"):
             self._read_option(call)
+        elif reads_parameter(function):
+            self._read_helper_call(call)
+
+    def _read_helper_call(self, call: ast.Call) -> None:
+        """Add the parameter that a function of the repository reads: the name is one of the first two arguments."""
+        for index, argument in enumerate(call.args[:2]):
+            text = argument.value if isinstance(argument, ast.Constant) else None
+            if isinstance(text, str) and is_parameter_name(text):
+                default = call.args[index + 1] if index + 1 < len(call.args) else argument_of(call, "default")
+                self._add(NameKind.PARAMETER, argument, default)
+                return
 
     def _add_callback(self, kind: NameKind | None, name: ast.expr | None, callback: ast.expr | None) -> None:
         """Add the function that messages, requests, goals or a timer call, if both names are known."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
@@ -13,6 +14,18 @@ _MAX_BYTES = 1 << 20
 _PYTHON_LINE = b"python"
 _FORMATTED_TEXT = "f-string"
 """The beginning of the messages about errors in formatted texts."""
+
+_HEAD = 500
+"""The number of characters at the beginning of a source in which generators leave their mark."""
+_GENERATED = re.compile(
+    r"^[ \t]*(?:#|//|/?\*).*\b(?:auto-?generated|(?:generated|created)\s+(?:by|from)|do not edit)\b",
+    re.IGNORECASE | re.MULTILINE,
+)
+
+
+def is_generated(text: str) -> bool:
+    """Return whether the comments at the beginning of a source say that a program generates it."""
+    return _GENERATED.search(text[:_HEAD]) is not None
 
 
 def try_read_source(path: Path) -> SourceText | None:

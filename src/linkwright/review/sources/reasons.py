@@ -46,6 +46,8 @@ def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -
     text = joined_first([item.name for item in items], MAX_NAMES)
     if kind is NameKind.PARAMETER:
         return phrase("values that launch files and parameter files give to '{name}' have no effect", name=text)
+    if kind is NameKind.ELEMENT:
+        return phrase("values that worlds and descriptions give to '{name}' have no effect", name=text)
     if kind is NameKind.FRAME:
         return frame_reason(str(text))
     if kind is NameKind.OPTION:

@@ -1,0 +1,79 @@
+"""Find the parameters that sources read with functions of their own, and the SDF elements that plugins read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+_TEMPLATE = r"(?:<[^<>()]*(?:<[^<>]*>)?[^<>()]*>\s*)?"
+_VERB = r"(?:get|read|load|declare|retrieve|fetch|init|require)"
+_FUNCTION = re.compile(rf"_?{_VERB}(?:\w*_)?(?:[Pp]aram|[Pp]arameter)_?|_?{_VERB}\w*[a-z](?:Param|Parameter)_?")
+_CALL = re.compile(rf"\b(?P<name>\w*[Pp]aram(?:eter)?_?)\s*{_TEMPLATE}(?=\()")
+_NAME = re.compile(r"[~/]?[A-Za-z]\w*(?:[./]\w+)*")
+_FILE = re.compile(r".*\.(?:ya?ml|json|xml|urdf|srdf)")
+_SDF = r"\b\w*[sS][dD][fF]\w*"
+_ELEMENT = re.compile(
+    rf"{_SDF}\s*(?:->|\.)\s*(?:Get(?:Element)?|HasElement|FindElement)\s*{_TEMPLATE}\(\s*\"(?P<own>\w+)\"|"
+    rf"\b\w*Param\w*\s*{_TEMPLATE}\(\s*\*?{_SDF}\s*,\s*\"(?P<passed>\w+)\""
+)
+_GAZEBO = re.compile(r"\b\w*gazebo_ros\w*\s*(?:->|\.)\s*$")
+_DEFAULT = re.compile(r"\s*,\s*(?P<value>-?[\d.]+(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")\s*[,)]")
+
+
+class ReadElement(NamedTuple):
+    """An element of SDF that a plugin reads.
+
+    Attributes:
+        name: the tag.
+        default: the literal default; empty if there is none.
+        start: the offset of the tag.
+    """
+
+    name: str
+    default: str
+    start: int
+
+
+def reads_parameter(function: str) -> bool:
+    """Return whether the name of a function says that it reads a parameter, such as ``getRequiredParam``."""
+    return _FUNCTION.fullmatch(function) is not None
+
+
+def is_parameter_name(text: str) -> bool:
+    """Return whether a text can be the name of a parameter, and not that of a file."""
+    return _NAME.fullmatch(text) is not None and _FILE.fullmatch(text) is None
+
+
+class HelperCall(NamedTuple):
+    """A call of a function that reads a parameter.
+
+    Attributes:
+        function: the name of the function.
+        start: the offset of the parenthesis before its arguments.
+        is_of_plugin: whether it reads an element of SDF, as the functions of ``gazebo_ros`` do.
+    """
+
+    function: str
+    start: int
+    is_of_plugin: bool
+
+
+def helper_calls(text: str) -> Iterator[HelperCall]:
+    """Yield the calls of functions that read parameters in a C++ source without comments."""
+    for match in _CALL.finditer(text):
+        if reads_parameter(match["name"]):
+            is_of_plugin = _GAZEBO.search(text, max(0, match.start() - 40), match.start()) is not None
+            yield HelperCall(match["name"], match.end(), is_of_plugin)
+
+
+def read_elements(text: str) -> Iterator[ReadElement]:
+    """Yield the elements of SDF that a C++ source of a plugin reads.
+
+    Args:
+        text: the source without comments.
+    """
+    for match in _ELEMENT.finditer(text):
+        group = "own" if match["own"] is not None else "passed"
+        default = _DEFAULT.match(text, match.end())
+        yield ReadElement(match[group], "" if default is None else default["value"], match.start(group))

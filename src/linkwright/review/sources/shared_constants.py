@@ -1,0 +1,131 @@
+"""Read text constants that sources share: those of included headers and of imported Python modules."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path, PurePosixPath
+
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages import enclosing_package
+from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+
+_CONSTANT = re.compile(
+    r"\b(?:const|constexpr)\b[^;={}()\"]*?\b(?P<name>\w+)\s*(?:\[\s*\])?\s*(?:=|\{|\()\s*\"(?P<text>[^\"\\]*)\"\s*[)}]?\s*;|"
+    r"^[ \t]*#[ \t]*define[ \t]+(?P<macro>\w+)[ \t]+\(?\"(?P<value>[^\"\\]*)\"\)?[ \t]*$",
+    re.MULTILINE,
+)
+_MAX_BYTES = 1 << 20
+_MAX_USERS = 50
+"""The maximum number of unchanged sources that are compared because of a changed constant."""
+
+
+def header_constants(texts: Sequence[str]) -> dict[str, str]:
+    """Return the text constants of headers by name. A name with several values is left out.
+
+    Args:
+        texts: the texts of the headers without comments.
+    """
+    found: dict[str, set[str]] = {}
+    for text in texts:
+        for match in _CONSTANT.finditer(text):
+            value = match["text"] if match["name"] else match["value"]
+            found.setdefault(match["name"] or match["macro"], set()).add(value)
+    return {name: values.pop() for name, values in found.items() if len(values) == 1}
+
+
+def imported_constants(path: Path, tree: ast.Module) -> dict[str, ast.expr]:
+    """Return the text constants that a Python source imports from modules of its folder or its package.
+
+    The keys are the names in the source, such as ``SCAN``, or ``topics.SCAN`` for a constant of an imported module.
+    """
+    constants: dict[str, ast.expr] = {}
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom):
+            own = _module_constants(path, node.module or "", node.level)
+            for alias in node.names:
+                local = alias.asname or alias.name
+                if alias.name in own:
+                    constants[local] = own[alias.name]
+                    continue
+                module = f"{node.module}.{alias.name}" if node.module else alias.name
+                inner = _module_constants(path, module, node.level)
+                constants |= {f"{local}.{name}": value for name, value in inner.items()}
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                own = _module_constants(path, alias.name, 0)
+                constants |= {f"{alias.asname or alias.name}.{name}": value for name, value in own.items()}
+    return constants
+
+
+def _module_constants(path: Path, module: str, level: int) -> Mapping[str, ast.expr]:
+    """Return the text constants of a module that a source imports.
+
+    The result is empty for a module outside of the package, including targets of links and ``..``.
+    """
+    parts = module.split(".") if module else []
+    folder = path.parents[level - 1] if 0 < level <= len(path.parents) else path.parent
+    places = [folder.joinpath(*parts)]
+    if not level and parts and parts[0] == folder.name:
+        places.append(folder.parent.joinpath(*parts))
+    package = enclosing_package(path.parent)
+    base = (path.parent if package is None else package[1]).resolve()
+    files = (place.with_name(f"{place.name}{PYTHON_SUFFIX}").resolve() for place in places if parts)
+    file = next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
+    return {} if file is None else _python_constants(str(file), file.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=256)
+def _python_constants(path: str, _modified: int) -> Mapping[str, ast.expr]:
+    """Return the names at the top of a Python file that are assigned a text once."""
+    file = Path(path)
+    try:
+        tree = ast.parse(file.read_text("utf-8")) if file.stat().st_size <= _MAX_BYTES else ast.Module([], [])
+    except (OSError, SyntaxError, ValueError, RecursionError):
+        return {}
+    stored = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
+    return {
+        target.id: node.value
+        for node in tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+        for target in node.targets
+        if isinstance(target, ast.Name) and stored.count(target.id) == 1
+    }
+
+
+def users_of_changed_constants(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[ChangedFile]:
+    """Yield the unchanged sources that use a constant of a changed header or module, whose value differs.
+
+    Only sources of the same package are searched.
+    """
+    changed = {path for file in changed_files for path in (file.old_path, file.new_path)}
+    users: dict[str, None] = {}
+    for file in changed_files:
+        path = PurePosixPath(file.path)
+        if None in (file.old_path, file.new_path) or path.suffix not in (*HEADER_SUFFIXES, PYTHON_SUFFIX):
+            continue
+        old, new = _constants(versions.old, file.old_path or ""), _constants(versions.new, file.new_path or "")
+        names = [name for name, value in new.items() if name in old and old[name] != value]
+        if not names:
+            continue
+        suffixes = (PYTHON_SUFFIX,) if path.suffix == PYTHON_SUFFIX else CPP_SUFFIXES
+        word = path.stem if path.suffix == PYTHON_SUFFIX else path.name
+        pattern = re.compile(rf"\b(?:{'|'.join(map(re.escape, names))})\b")
+        for user in versions.new.paths(suffixes, versions.new.package_of(file.path) or ""):
+            text = versions.new.text(user)
+            is_part = user not in changed and TEST_FOLDERS.isdisjoint(PurePosixPath(user).parts)
+            if is_part and word in text and pattern.search(text) and versions.old.file(user).is_file():
+                users[user] = None
+    yield from (ChangedFile(user, user) for user in list(users)[:_MAX_USERS])
+
+
+def _constants(version: Version, path: str) -> dict[str, str]:
+    """Return the text constants of a header or a Python module."""
+    file = version.file(path)
+    if not path.endswith(PYTHON_SUFFIX):
+        return header_constants([version.text(path)])
+    values = _python_constants(str(file), file.stat().st_mtime_ns) if file.is_file() else {}
+    return {name: str(value.value) for name, value in values.items() if isinstance(value, ast.Constant)}

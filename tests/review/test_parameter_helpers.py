@@ -1,0 +1,50 @@
+"""Parameters that sources read with functions of their own, and elements of SDF that plugins read."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+HEAD = "#include <ros/ros.h>\nvoid Arm::init() {{\n  {}\n}}\n"
+
+
+@pytest.mark.parametrize(
+    ("path", "call", "expected"),
+    [
+        ("a.cpp", 'getRequiredParam(nh, "gain", &gain_);', "parameters added: 'gain'"),
+        ("a.cpp", 'rate_ = declare_or_get_param<double>(node, "rate", 5.0);', "parameters added: 'rate' (5.0)"),
+        ("a.cpp", 'declareParameter("speed", rclcpp::ParameterValue(0.3));', "parameters added: 'speed'"),
+        ("a.cpp", 'auto p = get_parameter("port").as_int();', "parameters added: 'port'"),
+        ("a.cpp", 'auto s = this->sdf->Get<double>("noise", 0.1).first;',
+         "parameters of the plugin added: 'noise' (0.1)"),
+        ("a.cc", 'if (_sdf->HasElement("topic")) f();', "parameters of the plugin added: 'topic'"),
+        ("a.cc", 'n_ = SdfParamDouble(*_sdf, "scale", 2.5);', "parameters of the plugin added: 'scale' (2.5)"),
+        ("a.cpp", 'gazebo_ros_->getParameter<double>(rate_, "updateRate", 9.0);',
+         "parameters of the plugin added: 'updateRate' (9.0)"),
+        ("a.py", "gain = load_param('gain', 2.0)", "parameters added: 'gain' (2.0)"),
+    ],
+)  # fmt: skip
+def test_parameters_of_functions_of_the_repository_are_told(repository, compare, path, call, expected):
+    text = (lambda code: f"import rclpy\n{code}\n") if path.endswith(".py") else HEAD.format
+    repository.commit({**MANIFEST, f"arm/src/{path}": text("")})
+    repository.write({f"arm/src/{path}": text(call)})
+    assert expected in sentences(subject(compare(repository), f"arm/src/{path}"))
+
+
+@pytest.mark.parametrize(
+    "call", ['setParam("gain", 1);', 'load_parameters("gains.yaml");', 'loadParam("config/gains.yaml");', 'f("gain");']
+)
+def test_other_calls_read_no_parameter(repository, compare, call):
+    repository.commit({**MANIFEST, "arm/src/a.cpp": HEAD.format("")})
+    repository.write({"arm/src/a.cpp": HEAD.format(call)})
+    assert "parameters" not in " ".join(sentences(subject(compare(repository), "arm/src/a.cpp")))
+
+
+def test_an_element_that_a_plugin_reads_no_more_is_breaking(repository, compare):
+    repository.commit({**MANIFEST, "arm/src/a.cpp": HEAD.format('_sdf->Get<double>("noise");')})
+    repository.write({"arm/src/a.cpp": HEAD.format('_sdf->Get<double>("noise_level");')})
+    (sentence,) = breaking(compare(repository))
+    assert sentence == "parameter of the plugin 'noise' renamed to 'noise_level'"

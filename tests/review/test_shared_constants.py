@@ -1,0 +1,75 @@
+"""Topics whose names are constants of headers and of other Python modules."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+HEADER = """#pragma once
+namespace names {
+constexpr char SCAN[] = "scan";
+const std::string STATE{"state"};
+#define POSE "pose"
+}
+"""
+TALKER = """#include "arm/names.hpp"
+Arm::Arm() : Node("arm") {
+  scan_ = create_publisher<LaserScan>(names::SCAN, 10);
+  state_ = create_publisher<State>(names::STATE, 10);
+  pose_ = create_publisher<Pose>(POSE, 10);
+}
+"""
+CPP = {**MANIFEST, "arm/include/arm/names.hpp": HEADER, "arm/src/arm.cpp": TALKER}
+MODULE = "SCAN = 'scan'\n"
+NODE = "import rclpy\n{}\nnode = rclpy.create_node('arm')\nnode.create_publisher(LaserScan, {}, 10)\n"
+
+
+@pytest.mark.parametrize(("old", "new"), [('"scan"', '"laser"'), ('"state"', '"status"'), ('"pose"', '"place"')])
+def test_a_changed_constant_of_a_header_renames_the_topics_of_its_users(repository, compare, old, new):
+    repository.commit(CPP)
+    repository.write({"arm/include/arm/names.hpp": HEADER.replace(old, new)})
+    result = compare(repository)
+    (sentence,) = sentences(subject(result, "arm/src/arm.cpp"))
+    assert f"renamed to '{new.strip(chr(34))}'" in sentence
+    assert sentence in breaking(result)
+
+
+def test_a_variable_of_a_header_that_the_source_assigns_is_no_constant(repository, compare):
+    text = TALKER.replace("  scan_ =", "  SCAN = read();\n  scan_ =")
+    repository.commit({**CPP, "arm/src/arm.cpp": text})
+    repository.write({"arm/include/arm/names.hpp": HEADER.replace('"scan"', '"laser"')})
+    assert not [sentence for sentence in breaking(compare(repository)) if "publisher" in sentence]
+
+
+@pytest.mark.parametrize(
+    ("statement", "name"),
+    [
+        ("from arm.names import SCAN", "SCAN"),
+        ("from .names import SCAN as TOPIC", "TOPIC"),
+        ("from arm import names", "names.SCAN"),
+        ("import names", "names.SCAN"),
+    ],
+)
+def test_a_changed_constant_of_a_module_renames_the_topics_of_its_users(repository, compare, statement, name):
+    node = NODE.format(statement, name)
+    repository.commit({**MANIFEST, "arm/arm/names.py": MODULE, "arm/arm/node.py": node, "arm/arm/__init__.py": ""})
+    repository.write({"arm/arm/names.py": MODULE.replace("scan", "laser")})
+    expected = "publisher 'scan' (LaserScan) renamed to 'laser' (LaserScan)"
+    assert expected in breaking(compare(repository))
+
+
+def test_an_unused_constant_changes_no_topic(repository, compare):
+    node = NODE.format("from arm.names import SCAN", "'scan'")
+    repository.commit({**MANIFEST, "arm/arm/names.py": MODULE, "arm/arm/node.py": node, "arm/arm/__init__.py": ""})
+    repository.write({"arm/arm/names.py": MODULE.replace("scan", "laser")})
+    assert breaking(compare(repository)) == []
+
+
+def test_a_module_outside_of_the_package_is_not_read(repository, compare):
+    node = NODE.format("from ...other.names import SCAN", "SCAN")
+    repository.commit({**MANIFEST, "other/names.py": MODULE, "arm/arm/node.py": node, "arm/arm/__init__.py": ""})
+    repository.write({"arm/arm/node.py": node.replace("'arm'", "'leg'")})
+    assert "scan" not in " ".join(sentences(subject(compare(repository), "arm/arm/node.py")))
