@@ -65,7 +65,10 @@ class SkippingLoop(asyncio.SelectorEventLoop):
 
 
 class LoopClock(Timebase):
-    """The time of the event loop, for the graph on it; each reading of the time of day is a microsecond later."""
+    """The time of the event loop, for the graph on it.
+
+    Each reading of the time of day is a microsecond later.
+    """
 
     def __init__(self) -> None:
         self._loop = asyncio.get_running_loop()
@@ -91,7 +94,10 @@ def graph_clock() -> Timebase:
 
 
 def skipping(test: Callable[..., Coroutine[Any, Any, T]]) -> Callable[..., T]:
-    """Run a test that is a coroutine on a loop that skips its waits; its fixtures must not be coroutines."""
+    """Run a test that is a coroutine on a loop that skips its waits.
+
+    Its fixtures must not be coroutines.
+    """
 
     @functools.wraps(test)
     def run(*arguments: Any, **named: Any) -> T:

@@ -21,7 +21,9 @@ _EXECUTOR_WAITS = ("_sleep", "work.py")
 def wait_until(
     condition: Callable[[], object], seconds: float = SECONDS, what: object = "", pause: float = _PAUSE
 ) -> None:
-    """Wait in this thread until a condition holds; on failure, the message contains ``what``, or its result.
+    """Wait in this thread until a condition holds.
+
+    On failure, the message contains ``what``, or its result.
 
     The pause between two checks is given in seconds: it is longer if a check is expensive, as in a browser.
     """

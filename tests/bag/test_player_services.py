@@ -32,9 +32,9 @@ class PlayerHarness:
     async def call(self, name: str, **request):
         kind = "".join(word.title() for word in name.split("_"))
         client = self._node.create_client(f"rosbag2_interfaces/srv/{kind}", f"/rosbag2_player/{name}")
-        answer = client.call_async(client.srv_type.Request(**request))
+        response = client.call_async(client.srv_type.Request(**request))
         await self.graph.settle()
-        return answer.result()
+        return response.result()
 
 
 @pytest.fixture

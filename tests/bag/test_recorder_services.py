@@ -37,9 +37,9 @@ class RecorderHarness:
     async def call(self, name: str) -> Any:
         kind = "".join(word.title() for word in name.split("_"))
         client = self._node.create_client(f"rosbag2_interfaces/srv/{kind}", f"/rosbag2_recorder/{name}")
-        answer = client.call_async(client.srv_type.Request())
+        response = client.call_async(client.srv_type.Request())
         await self.graph.settle()
-        return answer.result()
+        return response.result()
 
     def recorded(self) -> list[str]:
         self.recorder.close()

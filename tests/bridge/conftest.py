@@ -1,3 +1,5 @@
+"""Fixtures of the bridge tests: two networks, a bridge between them, and processes on both."""
+
 from __future__ import annotations
 
 import asyncio

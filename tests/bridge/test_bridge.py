@@ -1,3 +1,5 @@
+"""The bridge: topics, services and actions that nodes of two networks exchange through it."""
+
 from __future__ import annotations
 
 import threading
@@ -166,7 +168,10 @@ def test_first_message_of_second_publisher_on_bridged_topic_is_not_lost(networks
 
 @pytest.mark.parametrize(("source", "target"), WAYS)
 def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, source, target):
-    """Messages are published once the bridge is connected; a busy machine needs over a second to acknowledge all."""
+    """Messages are published once the bridge is connected.
+
+    A busy machine needs over a second to acknowledge all.
+    """
     monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", SECONDS)
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
@@ -395,7 +400,10 @@ def test_messages_of_unknown_type_are_bridged_as_raw_bytes(networks):
 
 @pytest.mark.parametrize(("expects", "seconds"), [(False, 1.0), (True, 10.0)])
 def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, expects, seconds):
-    """On a very busy machine, subscribers match late. Their publishers must not be closed before that."""
+    """On a very busy machine, subscribers match late.
+
+    Their publishers must not be closed before that.
+    """
     now = [1000.0]
     monkeypatch.setattr("linkwright.bridge.mirrors.time", SimpleNamespace(monotonic=lambda: now[0]))
     graph = Graph()

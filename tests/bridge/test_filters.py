@@ -1,3 +1,5 @@
+"""The name filters that select what a bridge forwards."""
+
 from __future__ import annotations
 
 import pytest

@@ -182,12 +182,12 @@ async def test_client_publishes_to_ros_topic():
 async def test_client_calls_service():
     set_bool = get_service("std_srvs/srv/SetBool")
 
-    def answer(request, response):
+    def on_request(request, response):
         response.success, response.message = True, f"set to {request.data}"
         return response
 
     async with bridge_setup() as setup, setup.client() as client:
-        setup.node.create_service(set_bool, "/light", answer)
+        setup.node.create_service(set_bool, "/light", on_request)
         light = None
         while light is None:
             services = (await client.until("advertiseServices"))["services"]
@@ -217,8 +217,8 @@ async def test_parameters_are_read_set_and_subscribed():
         await client.send("subscribeParameterUpdates", parameterNames=["/robot.speed"])
         change = {"name": "/robot.speed", "value": 2, "type": "float64"}
         await client.send("setParameters", parameters=[change], id="two")
-        answers = [await client.until("parameterValues") for _ in range(2)]
-        assert [answer["parameters"][0]["value"] for answer in answers] == [2.0, 2.0]
+        responses = [await client.until("parameterValues") for _ in range(2)]
+        assert [response["parameters"][0]["value"] for response in responses] == [2.0, 2.0]
         assert setup.node.get_parameter("speed").value == 2.0
         await client.send("getParameters", parameterNames=[], id="all")
         names = {parameter["name"] for parameter in (await client.until("parameterValues"))["parameters"]}

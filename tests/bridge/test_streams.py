@@ -1,3 +1,5 @@
+"""The streams of messages: which one a subscription awaits, and which ones it can receive."""
+
 from __future__ import annotations
 
 import pytest

@@ -100,7 +100,10 @@ class ArmPage:
 
 
 def open_scene(live: Any, open_page: Any) -> ArmPage:
-    """Publish the arm, and open a page that shows it from above; the arguments are the fixtures of these names."""
+    """Publish the arm, and open a page that shows it from above.
+
+    The arguments are the fixtures of these names.
+    """
     viewer = live(yaml.safe_dump(CONFIG))
     viewer.publish("/robot_description", String(data=ARM), DESCRIPTION_QOS)
     viewer.place("tip", *TIP, 0.0)

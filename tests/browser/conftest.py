@@ -97,7 +97,10 @@ def playwright() -> Iterator[Playwright]:
 
 @pytest.fixture(scope="module")
 def browser(playwright: Playwright) -> Iterator[Browser]:
-    """Run a browser for each module; it starts in a tenth of a second, and modules do not affect each other."""
+    """Run a browser for each module.
+
+    It starts in a tenth of a second, and modules do not affect each other.
+    """
     with run_browser(playwright) as new_browser:
         yield new_browser
 
@@ -186,7 +189,10 @@ def program_starter(start_program: Callable[..., forked.Program], folder: Path) 
 
 @pytest.fixture
 def live() -> Iterator[Callable[..., LiveViewer]]:
-    """Return a function that starts a viewer in this process with a configuration; see `LiveViewer`."""
+    """Return a function that starts a viewer in this process with a configuration.
+
+    See `LiveViewer`.
+    """
     viewers: list[LiveViewer] = []
 
     def run(config: str, **options: Any) -> LiveViewer:
@@ -254,7 +260,7 @@ def until(page: Page, condition: str) -> None:
     )
 
 
-def becomes(read: Callable[[], Value], expected: Value) -> None:
+def wait_until_equal(read: Callable[[], Value], expected: Value) -> None:
     """Read a value repeatedly until it is the expected one; fail with the last value."""
     limit = time.monotonic() + SECONDS
     while (value := read()) != expected and time.monotonic() < limit:

@@ -40,7 +40,10 @@ Visualization Manager:
 
 
 def configuration(displays: str, *, distance: float = 10.0, pitch: float = 0.6, yaw: float = 0.8) -> str:
-    """Return a .rviz file with an Orbit view around the frame ``base``; `displays` are its entries as YAML."""
+    """Return a .rviz file with an Orbit view around the frame ``base``.
+
+    `displays` are its entries as YAML.
+    """
     entries = "".join(f"    {line}\n" for line in displays.strip("\n").splitlines())
     return FILE.format(displays=entries.rstrip("\n"), distance=distance, pitch=pitch, yaw=yaw)
 

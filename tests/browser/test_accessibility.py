@@ -14,7 +14,7 @@ from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 from tests.browser.arm import write_arm
 from tests.browser.axe import violations
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.conftest import SECONDS, state, until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.test_modeling import open_modeling
 from tests.browser.test_overlays import unfold
@@ -132,7 +132,7 @@ def publish_until_shown(publish: Callable[[], None], answer: Locator) -> None:
         publish()
         return answer.count() > 0
 
-    becomes(is_shown, True)
+    wait_until_equal(is_shown, True)
 
 
 def test_live_panels_pass_axe(live: Callable[..., LiveViewer], open_page):

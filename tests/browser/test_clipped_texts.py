@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from tests.browser.conftest import SECONDS, Start, becomes, until
+from tests.browser.conftest import SECONDS, Start, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -105,7 +105,7 @@ def test_scene_takes_half_of_small_window(start: Start, browser: Browser, tmp_pa
     page.wait_for_function("window.linkwright?.ready === true")
     page.locator(".timeline-track").wait_for()
     share = "document.querySelector('.canvas-box').clientHeight / window.innerHeight"
-    becomes(lambda: page.evaluate(share) >= 0.5, True)
+    wait_until_equal(lambda: page.evaluate(share) >= 0.5, True)
     page.locator(".dv-tab", has_text="3D View").wait_for(state="hidden")
     page.close()
 
@@ -119,7 +119,7 @@ def test_inspect_card_fits_low_window(start: Start, browser: Browser, tmp_path) 
     page.locator(".timeline-track").wait_for()
     page.get_by_role("button", name="Inspect").click()
     cut = "element => element.scrollHeight > element.clientHeight + 1"
-    becomes(lambda: page.locator(".inspect-card").evaluate(cut), False)
+    wait_until_equal(lambda: page.locator(".inspect-card").evaluate(cut), False)
     page.close()
 
 
@@ -144,7 +144,7 @@ def test_row_of_clicked_link_is_visible_above_help(start: Start, browser: Browse
       const help = document.querySelector(".displays-panel .help").getBoundingClientRect();
       return row !== undefined && row.height > 0 && row.bottom <= help.top + 1;
     }"""
-    becomes(lambda: page.evaluate(is_visible), True)
+    wait_until_equal(lambda: page.evaluate(is_visible), True)
     assert page.locator(".displays-panel .row.selected").inner_text().startswith("z")
     page.close()
 

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page
 
 from tests.browser.axe import violations
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.pixels import colors_at
 from tests.browser.test_export import export, open_file  # noqa: F401 - a fixture
 
@@ -79,12 +79,12 @@ def test_both_robots_are_drawn_with_difference_colors(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     green = "#009900"
-    becomes(lambda: link_appearance(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
-    becomes(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
+    wait_until_equal(lambda: link_appearance(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
+    wait_until_equal(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert page.locator(".comparison-legend li").all_inner_texts() == ["added", "changed", "removed", "old"]
     page.get_by_label("Color the differences").uncheck()
-    becomes(lambda: set(link_appearance(page, 0).values()), {(green, 1)})
-    becomes(lambda: set(link_appearance(page, 1).values()), {(GRAY, 0.4)})
+    wait_until_equal(lambda: set(link_appearance(page, 0).values()), {(green, 1)})
+    wait_until_equal(lambda: set(link_appearance(page, 1).values()), {(GRAY, 0.4)})
 
 
 def pixels(page: Page) -> list[tuple[int, int, int]]:
@@ -132,14 +132,14 @@ def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_pag
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
     assert old_only != both_robots
     page.get_by_label("Opacity of the old robot").fill("1")
-    becomes(lambda: {alpha for _, alpha in link_appearance(page, 1).values()}, {1})
+    wait_until_equal(lambda: {alpha for _, alpha in link_appearance(page, 1).values()}, {1})
     opaque = pixels(page)
     assert sum(sum(pixel) for pixel in opaque) < sum(sum(pixel) for pixel in old_only), (
         "the gray of the old robot is darker than the ground behind it"
     )
     show(page, "Show the new robot", on=True)
     show(page, "Show the old robot", on=False)
-    becomes(lambda: sum(b > 1.5 * r and b > 60 for r, g, b in pixels(page)) > 0, True)
+    wait_until_equal(lambda: sum(b > 1.5 * r and b > 60 for r, g, b in pixels(page)) > 0, True)
 
 
 def test_difference_selects_link_and_opens_both_sources(start, open_page, files):
@@ -157,8 +157,8 @@ def test_difference_selects_link_and_opens_both_sources(start, open_page, files)
     for side, number in (("old.urdf:6", 6), ("new.urdf:6", 6)):
         group(page, "turn", "Joint").get_by_role("button", name=side, exact=False).click()
         until(page, "lw.panels.source.expanded.lines > 0")
-        becomes(lambda name=side[:8]: state(page, "panels.source.origin.file").endswith(name), True)
-        becomes(lambda: [mark["from"] for mark in state(page, "panels.source.origin.marks")][-1:], [number])
+        wait_until_equal(lambda name=side[:8]: state(page, "panels.source.origin.file").endswith(name), True)
+        wait_until_equal(lambda: [mark["from"] for mark in state(page, "panels.source.origin.marks")][-1:], [number])
 
 
 def test_joint_sliders_move_both_robots_and_edits_are_followed(start, open_page, files):
@@ -166,7 +166,7 @@ def test_joint_sliders_move_both_robots_and_edits_are_followed(start, open_page,
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     page.locator('[data-joint="turn"] input[type=range]').fill("1.5707963")
-    becomes(lambda: [round(bound, 2) for bound in bounds(page, 0, "arm")], [0, 0.3, 0.6])
+    wait_until_equal(lambda: [round(bound, 2) for bound in bounds(page, 0, "arm")], [0, 0.3, 0.6])
     until(page, "Math.abs(lw.frames['old/arm'].orientation[0] - Math.SQRT1_2) < 1e-3")
     new.write_text(NEW.replace('xyz="0 0.3 0.6"', 'xyz="0 0 0.6"'), encoding="utf-8")
     page.get_by_text("4 differences").wait_for()
@@ -189,9 +189,9 @@ def test_git_commit_is_compared_as_old_version(start, open_page, files):
     new.write_text(NEW, encoding="utf-8")
     page = open_page(start("view", str(new), "--against", "HEAD"))
     page.get_by_text("5 differences").wait_for()
-    becomes(lambda: link_appearance(page, 1).get("camera"), (RED, 0.63))
+    wait_until_equal(lambda: link_appearance(page, 1).get("camera"), (RED, 0.63))
     group(page, "camera").get_by_role("button", name="HEAD:new.urdf:5", exact=False).click()
-    becomes(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
+    wait_until_equal(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
     page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
     assert page.locator(".source-file").evaluate("(e) => e.selectedOptions[0].textContent") == "HEAD:new.urdf"
 
@@ -224,14 +224,14 @@ def test_exported_review_shows_both_robots_list_and_joint_sliders(open_file, fil
     assert str(tmp_path) not in exported_file.read_text(encoding="utf-8")
     page = open_file(exported_file)
     assert page.locator(".comparison-count").inner_text() == "5 differences"
-    becomes(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
+    wait_until_equal(lambda: link_appearance(page, 1), {"arm": (GRAY, 0.4), "camera": (RED, 0.63)})
     assert link_appearance(page, 0)["lidar"] == (BLUE, 1)
     assert "old.urdf:6" in group(page, "turn", "Joint").inner_text()
     assert group(page, "turn", "Joint").get_by_role("button", name="old.urdf", exact=False).count() == 0
     group(page, "camera").locator("button.difference-name").click()
     page.locator(".selection-card strong", has_text="camera").wait_for()
     page.locator('[data-joint="turn"] input[type=range]').fill("1.5707963")
-    becomes(lambda: round(state(page, "frames")["arm"]["orientation"][0], 3), 0.707)
+    wait_until_equal(lambda: round(state(page, "frames")["arm"]["orientation"][0], 3), 0.707)
     assert round(state(page, "frames")["old/arm"]["orientation"][0], 3) == 0.707
     page.get_by_title("Show the new robot", exact=False).get_by_role("checkbox").uncheck()
-    becomes(lambda: sorted(link_appearance(page, 1)), ["arm", "base", "camera"])
+    wait_until_equal(lambda: sorted(link_appearance(page, 1)), ["arm", "base", "camera"])

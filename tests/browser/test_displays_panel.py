@@ -150,7 +150,10 @@ def test_context_menu_renames_and_groups_display(grouped_displays):
 
 
 def test_reason_for_empty_display_is_shown_in_row_and_diagnostics(live, open_page):
-    """The tooltip, the help below the list and the diagnostics show the reason; the diagnostics link to the row."""
+    """The tooltip, the help below the list and the diagnostics show the reason.
+
+    The diagnostics link to the row.
+    """
     viewer = live(configuration(_SILENT))
     page = open_page(viewer, wait=False)
     reason = "Topic: No messages received: the topic has no publisher"

@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.golden import link, mesh, robot_of
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import dae, obj, png, stl_binary
@@ -33,7 +33,10 @@ ROBOT = configuration(
 
 @pytest.fixture
 def open_file(browser):
-    """Return a function that opens a file from disk; any request or error of the page fails the test."""
+    """Return a function that opens a file from disk.
+
+    Any request or error of the page fails the test.
+    """
     contexts, wrong = [], []
 
     def open_path(path: Path, locale: str = "en-US"):
@@ -50,7 +53,7 @@ def open_file(browser):
         page.on("request", on_request)
         page.goto(path.as_uri())
         # The page's policy forbids the evaluation of text, which wait_for_function needs.
-        becomes(lambda: page.evaluate("() => window.linkwright?.ready === true"), True)
+        wait_until_equal(lambda: page.evaluate("() => window.linkwright?.ready === true"), True)
         return page
 
     yield open_path
@@ -136,11 +139,11 @@ def test_exported_page_has_visual_switches_views_and_translation(open_file, tmp_
     page = open_file(tmp_path / "gripper.html")
     page.get_by_label("Collision").check()
     page.get_by_label("Visual").uncheck()
-    becomes(lambda: state(page, "robot")["visuals"], 0)
+    wait_until_equal(lambda: state(page, "robot")["visuals"], 0)
     robot = next(display for display in state(page, "displays") if display["class"].endswith("RobotModel"))
     assert robot["drawn"]["links"]["arm"]["collisions"]
     page.get_by_role("button", name="Top").click()
-    becomes(lambda: state(page, "view")["pitch"], pytest.approx(1.57, abs=0.01))
+    wait_until_equal(lambda: state(page, "view")["pitch"], pytest.approx(1.57, abs=0.01))
     chinese = open_file(tmp_path / "gripper.html", locale="zh-CN")
     assert chinese.get_by_label("碰撞").count() == 1
 
@@ -163,7 +166,7 @@ def test_exported_grid_is_at_wheel_contact_height(open_file, tmp_path):
     (tmp_path / "cart.urdf").write_text(WHEELED)
     export(tmp_path / "cart.html", tmp_path / "cart.urdf")
     page = open_file(tmp_path / "cart.html")
-    becomes(lambda: grid(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
+    wait_until_equal(lambda: grid(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
 
 
 def test_exported_grid_fits_small_mesh_robot(open_file, tmp_path):
@@ -172,7 +175,7 @@ def test_exported_grid_fits_small_mesh_robot(open_file, tmp_path):
     (tmp_path / "small.urdf").write_text(f'<robot name="small"><link name="base">{visual}</link></robot>')
     export(tmp_path / "small.html", tmp_path / "small.urdf")
     page = open_file(tmp_path / "small.html")
-    becomes(lambda: grid(page)["cell"], pytest.approx(0.01))
+    wait_until_equal(lambda: grid(page)["cell"], pytest.approx(0.01))
 
 
 def open_gripper(live, open_page):
@@ -237,7 +240,7 @@ def test_files_outside_package_are_listed_before_export(start, open_page, tmp_pa
     assert save_from_menu(page, "Export glb…", tmp_path).name == "robot.glb"
     dialog = page.get_by_role("dialog", name="The export contains files from outside the packages")
     dialog.wait_for()
-    becomes(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
+    wait_until_equal(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
 
 
 def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):

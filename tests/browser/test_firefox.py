@@ -34,7 +34,10 @@ CRATE = """\
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., Firefox]]:
-    """Return a function that starts Firefox; if that fails, the test is skipped, or fails in CI."""
+    """Return a function that starts Firefox.
+
+    If that fails, the test is skipped, or fails in CI.
+    """
     with ExitStack() as stack:
 
         def run(*, headless: bool) -> Firefox:

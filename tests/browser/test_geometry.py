@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_message
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.live import configuration
 from tests.rviz.displays.test_geometry_displays import message, pose
 
@@ -121,7 +121,7 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     assert size(drawing["Torque"])[1] < 0.2 < size(drawing["Torque"])[0]
     assert size(drawing["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
     assert drawing["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
-    becomes(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
+    wait_until_equal(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
 
 
 def test_property_changes_and_disabling_act_at_once(live, open_page):
@@ -220,10 +220,10 @@ def test_tree_rows_of_frames_links_and_joints_match_scene(live, open_page):
         result: str = row(page, key).locator(".row-value").inner_text()
         return result
 
-    becomes(lambda: value(f"{tf}/Frames/tip#Parent"), "base")
-    becomes(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1")
+    wait_until_equal(lambda: value(f"{tf}/Frames/tip#Parent"), "base")
+    wait_until_equal(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1")
     viewer.place("tip", 0.0, 0.0, 1.5)
-    becomes(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1.5")
+    wait_until_equal(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1.5")
     row(page, tf).locator(".twist").click()
     top = row(page, f"{model}/Links")
     assert "Link/Joint Tree" in top.inner_text()
@@ -234,6 +234,6 @@ def test_tree_rows_of_frames_links_and_joints_match_scene(live, open_page):
     assert [name for name in tree if name in ("base", "lift", "tip")] == ["base", "lift", "tip"]
     assert "Lower Limit" not in tree
     row(page, f"{model}/Joints/lift#Details").locator(".twist").click()
-    becomes(lambda: value(f"{model}/Joints/lift#Lower Limit"), "-1")
-    becomes(lambda: value(f"{model}/Joints/lift#Joint Axis"), "0; 1; 0")
-    becomes(lambda: value(f"{model}/Links/tip#Position"), "0; 0; 1.5")
+    wait_until_equal(lambda: value(f"{model}/Joints/lift#Lower Limit"), "-1")
+    wait_until_equal(lambda: value(f"{model}/Joints/lift#Joint Axis"), "0; 1; 0")
+    wait_until_equal(lambda: value(f"{model}/Links/tip#Position"), "0; 0; 1.5")

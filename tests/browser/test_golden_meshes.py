@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.golden import GOLDEN, golden_links, link, mesh, robot_of
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import dae, png, stl_binary
@@ -125,7 +125,7 @@ def test_transparent_layers_are_blended_by_depth(live, open_page):
             page = page or open_page(viewer)
             until(page, alphas(near_color, far_color))
             viewer.settle(page)
-            becomes(lambda page=page: center_color(page), pytest.approx(expected, abs=3))
+            wait_until_equal(lambda page=page: center_color(page), pytest.approx(expected, abs=3))
 
 
 def alphas(*colors: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.browser.arm import write_arm
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.pixels import colors_at
 
 pytestmark = pytest.mark.browser
@@ -109,8 +109,8 @@ def test_frames_are_drawn_by_depth_and_collisions_in_contrast(page):
     page.locator(".inspect-depth input").fill("2")
     until(page, "String(lw.invisibleProperties.frames) === '1,1,1'")
     switch(page, "frames")
-    becomes(lambda: count_orange(page), 0)  # the base has RViz's default color, red
+    wait_until_equal(lambda: count_orange(page), 0)  # the base has RViz's default color, red
     switch(page, "contrast")
-    becomes(lambda: count_orange(page) >= 3, True)
+    wait_until_equal(lambda: count_orange(page) >= 3, True)
     switch(page, "contrast")
-    becomes(lambda: count_orange(page), 0)
+    wait_until_equal(lambda: count_orange(page), 0)

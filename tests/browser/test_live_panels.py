@@ -16,7 +16,7 @@ from playwright.sync_api import Error, Page
 from linkwright.graph import ParameterDescriptor
 from linkwright.graph.parameters.parameter import Range
 from linkwright.messages import get_message
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 from tests.waiting import wait_until
 
@@ -115,7 +115,7 @@ def test_topic_fields_are_plotted(page: Page, robot: Robot):
     first, second = page.evaluate("window.linkwright.panels.monitor.plots[0].series")
     assert (first["name"], first["last"]) == ("/joint_states.position[shoulder]", 0.25)
     assert -1 <= second["last"] <= 1
-    becomes(lambda: len(colors_drawn(page)), 2)
+    wait_until_equal(lambda: len(colors_drawn(page)), 2)
     # During a pause the time window stays, and sampling continues.
     page.get_by_role("button", name="Pause").first.click()
     window = page.evaluate("window.linkwright.panels.monitor.window")
@@ -193,13 +193,13 @@ def test_topics_are_measured_and_opened(page: Page, robot: Robot):
     page.get_by_role("checkbox", name="Measure /left/current").check()
     until(page, f"{MONITOR}.traffic['/left/current']?.rate > 500")
     rate = "window.linkwright.panels.monitor.traffic['/left/current'].rate"
-    becomes(lambda: page.evaluate(rate), pytest.approx(1000, rel=0.2))
-    becomes(lambda: re.sub(r"\d+", "N", row.locator("td").nth(4).inner_text()), "N Hz")
+    wait_until_equal(lambda: page.evaluate(rate), pytest.approx(1000, rel=0.2))
+    wait_until_equal(lambda: re.sub(r"\d+", "N", row.locator("td").nth(4).inner_text()), "N Hz")
     page.get_by_role("button", name="Last message of /joint_states").click()
     page.get_by_role("button", name="position", exact=True).click()
     message = page.locator(".topic-message:visible")
     message.get_by_text("[0]").wait_for()
-    becomes(lambda: "0.25" in message.inner_text(), True)
+    wait_until_equal(lambda: "0.25" in message.inner_text(), True)
     # A click plots a number of the message.
     message.locator(".message-row", has_text="[0]").hover()
     message.get_by_role("button", name="Plot this field").first.click()
@@ -217,12 +217,14 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
     def from_left_to_right() -> list[str]:
         return sorted(row, key=lambda name: page.locator(f".vertex[data-id='{name}']").bounding_box()["x"])
 
-    becomes(from_left_to_right, row)
+    wait_until_equal(from_left_to_right, row)
     page.locator(".vertex[data-id='topic:/joint_states']").click()
     details = page.locator(".graph-details")
-    becomes(lambda: all(name in details.inner_text() for name in ("sensor_msgs/msg/JointState", "/planner")), True)
+    wait_until_equal(
+        lambda: all(name in details.inner_text() for name in ("sensor_msgs/msg/JointState", "/planner")), True
+    )
     neighbors = page.locator(".vertex.near")
-    becomes(
+    wait_until_equal(
         lambda: sorted(neighbors.evaluate_all("elements => elements.map((element) => element.dataset.id)")),
         ["node:/arm", "node:/planner"],
     )
@@ -236,7 +238,7 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
     drawing = page.locator(".graph-drawing > svg > g")
     transform = drawing.get_attribute("transform")
     page.keyboard.press("+")
-    becomes(lambda: drawing.get_attribute("transform") != transform, True)
+    wait_until_equal(lambda: drawing.get_attribute("transform") != transform, True)
 
 
 def test_parameters_are_edited(page: Page, robot: Robot):

@@ -9,7 +9,7 @@ import struct
 import pytest
 import trimesh
 
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -50,7 +50,7 @@ def rows(page):
 def test_all_mesh_formats_are_drawn(start, open_page, robot):
     page = open_page(start("view", robot()))
     assert state(page, "robot.visuals") == len(KINDS)
-    becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
+    wait_until_equal(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
 
 
 def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, robot, tmp_path):
@@ -60,7 +60,7 @@ def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, rob
     assert loose != proper
     (tmp_path / "loose.dae").write_text(loose)
     page = open_page(start("view", robot(link("loose", f"file://{tmp_path}/loose.dae", 2))))
-    becomes(lambda: rows(page).get("loose", ("", ""))[0], "ok")
+    wait_until_equal(lambda: rows(page).get("loose", ("", ""))[0], "ok")
 
 
 STL_OF_NAN = b"\0" * 80 + struct.pack("<I12fH", 1, *[0.0] * 3, math.nan, *[0.0] * 8, 0)
@@ -86,7 +86,7 @@ def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
     links = [link(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
     page = open_page(start("view", robot(*links)))
     files_by_link = {f"broken_{name[:-4]}": (name, message) for name, (_, message) in BROKEN.items()}
-    becomes(
+    wait_until_equal(
         lambda: {link: rows(page).get(link, ("", ""))[0] for link in files_by_link},
         dict.fromkeys(files_by_link, "error"),
     )
@@ -94,7 +94,7 @@ def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
         text = rows(page)[link_name][1]
         assert name in text
         assert message in text
-    becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
+    wait_until_equal(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
     assert state(page, "robot.visuals") == len(KINDS)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -62,9 +62,9 @@ def test_added_box_is_moved_undone_and_saved(start, open_page, tmp_path):
     number(page, "pose/0").press("Enter")
     until(page, f"Math.abs({BOUNDS}?.min[0] - 1.25) < 1e-3")
     undo.click()
-    becomes(lambda: float(number(page, "pose/0").input_value()), x)
+    wait_until_equal(lambda: float(number(page, "pose/0").input_value()), x)
     redo.click()
-    becomes(lambda: number(page, "pose/0").input_value(), "1.5")
+    wait_until_equal(lambda: number(page, "pose/0").input_value(), "1.5")
     assert redo.is_disabled()
     assert page.get_by_role("img", name="unsaved changes").is_visible()
     assert path.read_text() == YARD

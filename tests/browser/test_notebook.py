@@ -14,7 +14,7 @@ import pytest
 
 from linkwright import show
 from linkwright.diagnostics import LinkwrightError
-from tests.browser.conftest import becomes, state
+from tests.browser.conftest import state, wait_until_equal
 from tests.waiting import wait_until
 
 ARM = """<robot name="arm">
@@ -82,10 +82,10 @@ def test_jupyterlab_cell_shows_robot_with_working_slider(browser, lab):
     page.locator(".jp-Cell .cm-content").first.click()
     page.keyboard.press("Shift+Enter")
     frame = page.wait_for_selector("iframe[title=arm]").content_frame()
-    becomes(lambda: frame.evaluate("() => window.linkwright?.ready === true"), True)
+    wait_until_equal(lambda: frame.evaluate("() => window.linkwright?.ready === true"), True)
     level = highest(frame)
     frame.get_by_role("slider").first.fill("0.5")
-    becomes(lambda: highest(frame) > level + 0.01, True)
+    wait_until_equal(lambda: highest(frame) > level + 0.01, True)
     page.close()
 
 

@@ -11,7 +11,7 @@ from PIL import Image
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from tests.browser.arm import write_arm
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.kept_pictures import keep
 from tests.browser.live import configuration
 
@@ -79,7 +79,7 @@ def test_scene_overlays_do_not_overlap(start, open_page, tmp_path):
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
         page.evaluate(TELL)
-        becomes(lambda: overlapping(page.evaluate(BOXES, list(OVERLAYS))), [])
+        wait_until_equal(lambda: overlapping(page.evaluate(BOXES, list(OVERLAYS))), [])
         until(page, "lw.settled")
         keep(page, f"overlays-{width}x{height}")
 
@@ -94,7 +94,10 @@ WIDE = '<robot name="wide"><link name="base"><visual><geometry><box size="2 2 1"
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, height):
-    """A card that would cover the robot is folded. If the user unfolds it, the robot moves aside until it is closed."""
+    """A card that would cover the robot is folded.
+
+    If the user unfolds it, the robot moves aside until it is closed.
+    """
     (tmp_path / "wide.urdf").write_text(WIDE)
     page = open_page(start("view", str(tmp_path / "wide.urdf")))
     page.set_viewport_size({"width": width, "height": height})
@@ -117,13 +120,13 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
     if reaches:
         assert card.bounding_box()["height"] < 45
         fold.click()
-        becomes(lambda: state(page, "robotsRightEdge") < right_edge, True)
+        wait_until_equal(lambda: state(page, "robotsRightEdge") < right_edge, True)
         fit.click()  # moving aside was not enough
-    becomes(card_covers_robot, False)
+    wait_until_equal(card_covers_robot, False)
     page.keyboard.press("Escape")
     card.wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(right_edge, abs=1))
+    wait_until_equal(lambda: state(page, "robotsRightEdge"), pytest.approx(right_edge, abs=1))
 
 
 def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
@@ -137,7 +140,7 @@ def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
     reach, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
     page.locator(".inspect > button").click()
     page.locator(".inspect-card").wait_for()
-    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(reach - (width - reach), abs=1))
+    wait_until_equal(lambda: state(page, "robotsRightEdge"), pytest.approx(reach - (width - reach), abs=1))
 
 
 TALL = """\
@@ -170,13 +173,13 @@ def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, w
     file.write_text(TALL.replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     if height > 600:
-        becomes(lambda: count_head_pixels() > 0.98 * head_before, True)
+        wait_until_equal(lambda: count_head_pixels() > 0.98 * head_before, True)
     page.keyboard.press("Shift+F")  # moving down was not enough
-    becomes(lambda: count_head_pixels() > 0.15 * head_before, True)
+    wait_until_equal(lambda: count_head_pixels() > 0.15 * head_before, True)
     file.write_text(TALL)
     page.locator(".banner").wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(count_head_pixels, head_before)
+    wait_until_equal(count_head_pixels, head_before)
 
 
 def test_fit_button_shows_whole_robot(start, open_page, tmp_path):
@@ -204,7 +207,7 @@ def test_replaced_description_is_reported(live, open_page):
     publisher = viewer.run(lambda: other_node.create_publisher(String, "/robot_description", DESCRIPTION_QOS))
     viewer.run(lambda: publisher.publish(String(data=WIDE.replace('"wide"', '"narrow"'))))
     notice.get_by_text("Another node now publishes the description").wait_for()
-    becomes(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
+    wait_until_equal(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
 
 
 def test_missing_fixed_frame_offers_existing_frame_and_robot_display(live, open_page):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.rviz import RvizConfig
-from tests.browser.conftest import becomes
+from tests.browser.conftest import wait_until_equal
 from tests.browser.live import configuration
 from tests.panels.panels import RVIZ_PANELS, panels_of, window_state
 
@@ -78,7 +78,7 @@ def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path)
     wait_for_panels(page, "Displays", "Views")
     # The scene takes the remaining width.
     columns = ("Displays", "Views", "Diagnostics")
-    becomes(lambda: [column_width(page, column) for column in columns], pytest.approx([320, 290, 290], abs=3))
+    wait_until_equal(lambda: [column_width(page, column) for column in columns], pytest.approx([320, 290, 290], abs=3))
     assert not is_unsaved(page)
     page.keyboard.press("Control+s")
     assert viewer.run(viewer.viewer.config.text) == path.read_text()

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from linkwright.messages import get_message
-from tests.browser.conftest import becomes, count_frames, state, until
+from tests.browser.conftest import count_frames, state, until, wait_until_equal
 from tests.browser.pixels import Color, colors_at
 from tests.images.test_images import image
 from tests.rviz.clouds.test_clouds import cloud, depth_image, scan, xyz
@@ -79,10 +79,10 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
             *colors, near_edge, corner = colors_from_above(page, *points)
             return colors, near_edge[1] > 100, corner == BACKGROUND
 
-        becomes(read_appearance, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
+        wait_until_equal(read_appearance, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
     set_property(viewer, 0, ("Style",), "Flat Squares")
     set_property(viewer, 0, ("Alpha",), 0.5)
-    becomes(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
+    wait_until_equal(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
 
 
 def test_clicked_point_is_selected_and_shows_fields(live, open_page):
@@ -128,7 +128,7 @@ def test_large_cloud_is_updated_continuously(live, open_page):
 def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     displays = (
         entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
-        entry("Temperature", Topic={"Value": "/warm"}, **{"Size (m)": 0.5}),
+        entry("Temperature", Topic={"Value": "/temperature"}, **{"Size (m)": 0.5}),
         entry("GridCells", Topic={"Value": "/cells"}),
     )
     viewer = live(config(*displays))
@@ -136,13 +136,13 @@ def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     viewer.place("thermometer", 0.0, -2.0, 0.0)
     viewer.publish("/scan", placed(scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
     temperature = get_message("sensor_msgs/msg/Temperature")(temperature=100.0)
-    viewer.publish("/warm", placed(temperature, "thermometer"))
+    viewer.publish("/temperature", placed(temperature, "thermometer"))
     viewer.publish("/cells", cell_grid(-1.5, width=1.0, height=0.5))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.points === 1")
     until(page, "lw.displays[2].drawn.cells === 1")
     viewer.settle(page)
     points = (1.0, 0.0), (-3.0, 0.0), (0.0, -2.0), (-1.9, 0.2), (-1.9, 0.3)
-    becomes(lambda: colors_from_above(page, *points), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
+    wait_until_equal(lambda: colors_from_above(page, *points), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
 
 
 def test_map_is_drawn_and_updated(live, open_page):
@@ -157,20 +157,22 @@ def test_map_is_drawn_and_updated(live, open_page):
     # The corner is at x = -1, and cells are half a meter wide.
     points = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
     shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
-    becomes(lambda: colors_from_above(page, *points), shades)
+    wait_until_equal(lambda: colors_from_above(page, *points), shades)
     set_property(viewer, 0, ("Color Scheme",), "costmap")
-    becomes(lambda: colors_from_above(page, *points[:4]), [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)])
+    wait_until_equal(
+        lambda: colors_from_above(page, *points[:4]), [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)]
+    )
     set_property(viewer, 0, ("Color Scheme",), "raw")
     set_property(viewer, 0, ("Binary representation",), True)
     set_property(viewer, 0, ("Binary threshold",), 50)
-    becomes(
+    wait_until_equal(
         lambda: colors_from_above(page, *points[:4]), [(0, 0, 0), (255, 255, 255), (255, 255, 255), (255, 255, 255)]
     )
     set_property(viewer, 0, ("Binary representation",), False)
     set_property(viewer, 0, ("Color Scheme",), "map")
     viewer.publish("/map_updates", update(0, 0, 1, 1, [100]))
     until(page, "lw.displays[0].drawn.counts[100] === 2")
-    becomes(lambda: colors_from_above(page, points[0]), [(0, 0, 0)])
+    wait_until_equal(lambda: colors_from_above(page, points[0]), [(0, 0, 0)])
 
 
 def test_map_drawn_behind_does_not_hide_points(live, open_page):
@@ -185,10 +187,10 @@ def test_map_drawn_behind_does_not_hide_points(live, open_page):
     viewer.publish("/cloud", three_points(frame="cellar"))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
-    becomes(lambda: colors_from_above(page, (0.0, 0.0), (0.1, 0.1)), [GREEN, GREEN])
+    wait_until_equal(lambda: colors_from_above(page, (0.0, 0.0), (0.1, 0.1)), [GREEN, GREEN])
     set_property(viewer, 1, ("Draw Behind",), False)
     viewer.settle(page)
-    becomes(lambda: colors_from_above(page, (0.1, 0.1)) != [GREEN], True)
+    wait_until_equal(lambda: colors_from_above(page, (0.1, 0.1)) != [GREEN], True)
 
 
 def test_image_has_its_own_panel(live, open_page):
@@ -208,7 +210,7 @@ def test_image_has_its_own_panel(live, open_page):
         return box["height"] > box["width"] / 2, colors
 
     # The image keeps its proportions: the area above and below it is black.
-    becomes(read_appearance, (True, [RED, BLUE, (0, 0, 0)]))
+    wait_until_equal(read_appearance, (True, [RED, BLUE, (0, 0, 0)]))
 
     page.locator(".panel-tab", has_text="Image").locator(".tab-close").click()
     until(page, "lw.displays[0].enabled === false")
@@ -241,7 +243,7 @@ def test_image_is_composited_without_repainting_page(live, open_page):
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
     own_layers = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
-    becomes(
+    wait_until_equal(
         lambda: [any(layer.startswith(prefix) for layer in layers(page)) for prefix in own_layers], [True, True, True]
     )
 
@@ -262,20 +264,20 @@ def test_compressed_image_is_decoded_by_browser(live, open_page):
 
 def test_camera_display_shows_scene_over_image(live, open_page):
     displays = (
-        entry("Camera", Topic={"Value": "/eye/image"}, **{"Image Rendering": "background"}),
+        entry("Camera", Topic={"Value": "/camera/image"}, **{"Image Rendering": "background"}),
         entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
     )
     viewer = live(config(*displays))
     page = open_page(viewer, wait=False)
     # The camera is at the origin and looks along x: its z axis points ahead, and its x axis to the right.
-    viewer.place("eye", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
-    viewer.publish("/eye/camera_info", camera_info(40, 30))
+    viewer.place("camera", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
+    viewer.publish("/camera/camera_info", camera_info(40, 30))
     info = camera_info(40, 30)
     info.p = np.array([20.0, 0, 20, 0, 0, 20.0, 15, 0, 0, 0, 1, 0])
-    viewer.publish("/eye/camera_info", info)
-    viewer.publish("/eye/image", placed(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "eye"))
+    viewer.publish("/camera/camera_info", info)
+    viewer.publish("/camera/image", placed(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "camera"))
     until(page, "lw.displays[0]?.drawn?.image?.[0] === 40 && lw.displays[0].drawn.width > 0")
-    becomes(lambda: drawing_of(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
+    wait_until_equal(lambda: drawing_of(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
     assert drawing_of(page)["position"] == pytest.approx([0, 0, 0])
     viewer.publish("/cloud", three_points())
     until(page, "lw.displays[0].drawn.middle[0] < 200 && lw.displays[0].drawn.middle[2] > 100")  # blue, 2 m ahead
@@ -296,9 +298,9 @@ def test_depth_image_is_drawn_as_points(live, open_page):
     viewer.publish("/color/image", placed(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
     viewer.publish("/depth/image", placed(depth_image([[2.0, 4.0]])))
     until(page, "lw.displays[0]?.drawn?.points === 2")
-    becomes(lambda: drawing_of(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
+    wait_until_equal(lambda: drawing_of(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
     # The width of a pixel is half its distance: 1 m and 2 m here.
-    becomes(lambda: colors_from_above(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
+    wait_until_equal(lambda: colors_from_above(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 
 def test_depth_cloud_uses_chosen_image_transports(live, open_page):
@@ -327,5 +329,5 @@ def test_idle_displays_are_not_redrawn(live, open_page):
     viewer.publish("/map", grid())
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
-    becomes(lambda: count_frames(page), 0)
+    wait_until_equal(lambda: count_frames(page), 0)
     assert count_frames(page) == 0

@@ -11,7 +11,7 @@ from playwright.sync_api import Frame, Page
 
 from linkwright.learning.course import find_course
 from tests.browser.axe import violations
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.waiting import SECONDS
 
 pytestmark = [
@@ -77,7 +77,7 @@ def test_program_page_is_shown_until_program_ends(page):
     page.locator(KEYS).focus()
     page.keyboard.press("Control+c")
     page.wait_for_selector(FRAMES, state="detached")
-    becomes(lambda: page.locator(".program-panel").count(), 0)
+    wait_until_equal(lambda: page.locator(".program-panel").count(), 0)
     until(page, "lw.ready && /[$#] *$/.test(lw.panels.terminal.text)")
 
 
@@ -86,13 +86,13 @@ def test_second_program_has_button_and_killed_one_is_removed(page):
     frames_of(page)
     page.keyboard.type("linkwright view robot.urdf\n")
     buttons = page.locator(".program-tabs button")
-    becomes(buttons.count, 2)
+    wait_until_equal(buttons.count, 2)
     frames_of(page)
     assert [page.locator(FRAMES).nth(number).is_visible() for number in range(2)] == [False, True]
     buttons.first.click()
     assert [page.locator(FRAMES).nth(number).is_visible() for number in range(2)] == [True, False]
     page.locator(KEYS).focus()
     page.keyboard.press("Control+c")
-    becomes(page.locator(FRAMES).count, 1)
+    wait_until_equal(page.locator(FRAMES).count, 1)
     page.keyboard.type("kill -9 %1 %2\n")
     page.wait_for_selector(FRAMES, state="detached")

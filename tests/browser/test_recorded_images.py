@@ -13,7 +13,7 @@ from playwright.sync_api import Page
 from linkwright.bag import BagWriter
 from linkwright.graph import DEFAULT_QOS
 from linkwright.messages import get_message, serialize
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.images.test_images import image
 
 pytestmark = pytest.mark.browser
@@ -78,19 +78,21 @@ def switch(page: Page, name: str) -> None:
 @pytest.mark.parametrize("size", [(1280, 800), (800, 600)])
 def test_recording_with_only_images_shows_them_in_place_of_scene(open_recording, size):
     page = open_recording(*size, scans=False)
-    becomes(lambda: place(page, ".image-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0)
+    wait_until_equal(
+        lambda: place(page, ".image-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0
+    )
     page.locator(".dv-tab", has_text="3D View").dispatch_event("pointerdown")
     page.locator(".canvas-box").wait_for()
     page.locator(".dv-tab", has_text="raw").dispatch_event("pointerdown")
     switch(page, "front")
-    becomes(lambda: len({box["y"] for box in boxes(page)}) == 1 and len(boxes(page)), 2)
+    wait_until_equal(lambda: len({box["y"] for box in boxes(page)}) == 1 and len(boxes(page)), 2)
     left_box, right_box = sorted(boxes(page), key=lambda box: box["x"])
     assert left_box["x"] + left_box["width"] <= right_box["x"], "the images are side by side"
 
 
 def test_image_is_beside_scene_in_small_window(open_recording):
     page = open_recording(800, 600, scans=True)
-    becomes(lambda: place(page, ".canvas-box")["width"] > 400, True)
+    wait_until_equal(lambda: place(page, ".canvas-box")["width"] > 400, True)
     scene, panel = place(page, ".canvas-box"), place(page, ".image-panel")
     assert scene["x"] + scene["width"] <= panel["x"]
     assert panel["width"] > 300

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from linkwright.bag import BagReader
-from tests.browser.conftest import Program, becomes, state, until
+from tests.browser.conftest import Program, state, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -155,7 +155,7 @@ def test_range_is_marked_by_keys_and_cleared(page: Page):
     page.keyboard.press("]")
     until(page, "lw.recording.mark?.[0] === 0")
     choose(page, "Clear the mark")
-    becomes(lambda: state(page, "recording")["mark"], None)
+    wait_until_equal(lambda: state(page, "recording")["mark"], None)
 
 
 def test_viewer_without_history_can_record(start, open_page, tmp_path: Path):

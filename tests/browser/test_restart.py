@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.conftest import SECONDS, state, until, wait_until_equal
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -73,8 +73,8 @@ def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, p
     new_program = start("view", str(MBOT), "--port", port)
     assert new_program.url == program.url
     wait_until_connected(page)
-    becomes(lambda: state(page, "joints"), joints)
-    becomes(lambda: state(second, "joints"), joints)
+    wait_until_equal(lambda: state(page, "joints"), joints)
+    wait_until_equal(lambda: state(second, "joints"), joints)
     until(page, "lw.robot.visuals === 12 && lw.settled")
     assert state(page, "view.values") == view
     assert tabs(page) == panels
@@ -98,10 +98,10 @@ def test_restart_with_other_file_resets_view_and_keeps_panels(start, context, po
     start("view", str(other_file), "--port", port)
     wait_until_connected(page)
     until(page, "lw.robot.visuals === 12 && lw.settled")
-    becomes(lambda: state(page, "view.distance"), pytest.approx(first))
+    wait_until_equal(lambda: state(page, "view.distance"), pytest.approx(first))
     assert state(page, "joints.left_wheel_joint") == 0
     assert page.title().startswith("other.xacro")
-    becomes(lambda: tabs(page), panels)
+    wait_until_equal(lambda: tabs(page), panels)
 
 
 @pytest.fixture
@@ -149,7 +149,10 @@ def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, sh
 
 @posix
 def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
-    """The program notices the loss only after seconds; the page must keep its terminal in that time."""
+    """The program notices the loss only after seconds.
+
+    The page must keep its terminal in that time.
+    """
     sockets = []
 
     def forward_socket(page_end) -> None:

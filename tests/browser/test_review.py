@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.browser.conftest import becomes
+from tests.browser.conftest import wait_until_equal
 from tests.repositories import ARM, PACKAGE, Repository
 
 pytestmark = pytest.mark.browser
@@ -31,7 +31,7 @@ def test_scene_is_drawn_when_it_is_opened(browser, tmp_path):
     assert page.locator("iframe").count() == 0
     page.click("details.scene summary")
     page.frame_locator("details.scene iframe").get_by_text("Compare", exact=True).wait_for()
-    becomes(lambda: page.frames[-1].evaluate("() => window.linkwright?.ready === true"), True)
+    wait_until_equal(lambda: page.frames[-1].evaluate("() => window.linkwright?.ready === true"), True)
     assert page.frames[-1].evaluate("() => window.origin") == "null"
     page.click("details.scene summary")
     page.click("details.scene summary")

@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, Page
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import get_message
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.conftest import SECONDS, state, until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 
 pytestmark = pytest.mark.browser
@@ -73,19 +73,19 @@ def group_box(page: Page, name: str) -> dict[str, float]:
 def test_scene_is_above_panels_up_to_tablet_width(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
     width_beside = group_box(page, "Front")["width"] if width >= 600 else 0
-    becomes(lambda: box(page, ".canvas-box")["width"] + width_beside, pytest.approx(width, abs=8))
+    wait_until_equal(lambda: box(page, ".canvas-box")["width"] + width_beside, pytest.approx(width, abs=8))
     canvas = box(page, ".canvas-box")
     assert canvas["height"] > 300
     page.locator(".dv-tab", has_text="Displays").first.dispatch_event("pointerdown")
     page.wait_for_selector(".displays-panel")
-    becomes(lambda: box(page, ".displays-panel")["width"], width)
+    wait_until_equal(lambda: box(page, ".displays-panel")["width"], width)
     assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
 
 
 def test_images_are_beside_scene_in_wide_enough_window(open_window_of_size):
     page = open_window_of_size(800, 600)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
-    becomes(lambda: group_box(page, "Front") == group_box(page, "Back"), True)
+    wait_until_equal(lambda: group_box(page, "Front") == group_box(page, "Back"), True)
     scene, images = box(page, ".canvas-box"), group_box(page, "Front")
     assert scene["x"] + scene["width"] <= images["x"]
     assert scene["width"] > images["width"] > 300
@@ -168,7 +168,7 @@ def test_open_panels_have_enough_space(open_window_of_size, width, height):
             "reset": reset["x"] + reset["width"] <= width,
         }
 
-    becomes(has_room, dict.fromkeys(("scene", "tree", "time", "reset"), True))
+    wait_until_equal(has_room, dict.fromkeys(("scene", "tree", "time", "reset"), True))
 
 
 @pytest.mark.parametrize(("width", "height"), [(844, 390), (667, 375), (932, 430)])
@@ -182,21 +182,21 @@ def test_panels_are_beside_scene_on_phone_in_landscape(open_window_of_size, widt
     assert displays["x"] >= canvas["x"] + canvas["width"]
     assert displays["x"] + displays["width"] <= width + 1
     page.set_viewport_size({"width": height, "height": width})
-    becomes(lambda: box(page, ".canvas-box")["width"], height)
+    wait_until_equal(lambda: box(page, ".canvas-box")["width"], height)
     page.set_viewport_size({"width": width, "height": height})
-    becomes(lambda: box(page, ".canvas-box")["height"] > 0.65 * height, True)
+    wait_until_equal(lambda: box(page, ".canvas-box")["height"] > 0.65 * height, True)
 
 
 def test_window_resized_narrow_and_wide_keeps_its_panels(open_window_of_size):
     page = open_window_of_size(1280, 800)
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Topics", exact=True).click()
-    becomes(lambda: group_box(page, "Topics")["y"] > box(page, ".canvas-box")["y"] + 100, True)
+    wait_until_equal(lambda: group_box(page, "Topics")["y"] > box(page, ".canvas-box")["y"] + 100, True)
     page.set_viewport_size({"width": 500, "height": 800})
-    becomes(lambda: box(page, ".canvas-box")["width"], 500)
-    becomes(lambda: group_box(page, "Topics") == group_box(page, "Displays"), True)
+    wait_until_equal(lambda: box(page, ".canvas-box")["width"], 500)
+    wait_until_equal(lambda: group_box(page, "Topics") == group_box(page, "Displays"), True)
     page.set_viewport_size({"width": 1280, "height": 800})
-    becomes(lambda: group_box(page, "Topics")["x"] > group_box(page, "Displays")["x"], True)
+    wait_until_equal(lambda: group_box(page, "Topics")["x"] > group_box(page, "Displays")["x"], True)
 
 
 def test_wide_text_panels_share_one_group(open_window_of_size):
@@ -204,7 +204,9 @@ def test_wide_text_panels_share_one_group(open_window_of_size):
     for name in ("Source", "Topics", "Diagram", "Log"):
         page.get_by_role("button", name="Panels", exact=True).click()
         page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
-    becomes(lambda: [group_box(page, name) for name in ("Topics", "Diagram", "Log")], [group_box(page, "Source")] * 3)
+    wait_until_equal(
+        lambda: [group_box(page, name) for name in ("Topics", "Diagram", "Log")], [group_box(page, "Source")] * 3
+    )
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Log").count() == 1
 
 
@@ -271,7 +273,10 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(open_win
 
 
 def test_tabs_beside_views_are_not_clipped_in_chinese(open_window_of_size):
-    """At 1280 pixels, the third tab was clipped. Characters that no font has are drawn with the same width."""
+    """At 1280 pixels, the third tab was clipped.
+
+    Characters that no font has are drawn with the same width.
+    """
     page = open_window_of_size(1280, 800, "zh-CN")
     page.evaluate(
         """() => {
@@ -293,20 +298,22 @@ def test_tabs_beside_views_are_not_clipped_in_chinese(open_window_of_size):
         is_inside = last["x"] + last["width"] <= bar["x"] + bar["width"]
         return tabs.count(), is_inside, group.locator(".dv-tabs-overflow-dropdown-default").count()
 
-    becomes(fit, (3, True, 0))
+    wait_until_equal(fit, (3, True, 0))
 
 
 def test_tabs_beside_views_are_not_clipped_in_english(open_window_of_size):
     page = open_window_of_size(1280, 800)
     group = page.locator(".dv-tabs-and-actions-container", has=page.locator(".dv-tab", has_text="Views"))
-    becomes(lambda: (group.locator(".dv-tab").count(), group.locator("[class*=overflow-dropdown]").count()), (3, 0))
+    wait_until_equal(
+        lambda: (group.locator(".dv-tab").count(), group.locator("[class*=overflow-dropdown]").count()), (3, 0)
+    )
 
 
 def test_view_type_label_stays_on_one_line_in_chinese(open_window_of_size):
     page = open_window_of_size(800, 600, "zh-CN")
     page.locator(".dv-tab", has_text="视角").click()
     label = page.locator(".view-type > .toolbar-label")
-    becomes(
+    wait_until_equal(
         lambda: label.evaluate("element => element.offsetHeight < 2 * parseFloat(getComputedStyle(element).fontSize)"),
         True,
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.browser.axe import violations
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.browser.test_description import open_panel
 from tests.browser.test_editing import number, type_in
 
@@ -79,11 +79,11 @@ def test_file_is_edited_and_saved_and_robot_follows(start, open_page, file):
     until(page, f"{EDITOR}.unsaved.length === 1")
     text.press("Control+s")
     page.get_by_text("Saved: robot.urdf.xacro").wait_for()
-    becomes(file.read_text, ROBOT.replace("</robot>", '  <xacro:leg name="right"/>\n</robot>'))
+    wait_until_equal(file.read_text, ROBOT.replace("</robot>", '  <xacro:leg name="right"/>\n</robot>'))
     until(page, "lw.frames.right !== undefined")
     text.press("Control+z")
     page.locator(".editor-bar").get_by_role("button", name="Save", exact=True).click()
-    becomes(file.read_text, ROBOT)
+    wait_until_equal(file.read_text, ROBOT)
 
 
 def test_change_on_disk_is_merged_or_reported_as_conflict(start, open_page, file):
@@ -104,7 +104,7 @@ def test_change_on_disk_is_merged_or_reported_as_conflict(start, open_page, file
     text.press("Control+z")
     wait_for_text(page, "<!-- mine -->")
     text.press("Control+s")
-    becomes(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
+    wait_until_equal(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
 
 
 def test_robot_edits_and_text_edits_share_undo_history(start, open_page, file):
@@ -113,25 +113,25 @@ def test_robot_edits_and_text_edits_share_undo_history(start, open_page, file):
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("left", exact=True).locator("visible=true").first.click()
     page.get_by_role("button", name="Move and rotate the joint").click()
-    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    wait_until_equal(lambda: number(page, "xyz2").input_value(), "0")
     type_in(page, "xyz2", "0.4")
     page.get_by_role("button", name="Write", exact=True).click()
     leg = file.parent / "leg.xacro"
-    becomes(lambda: "0.4" in leg.read_text(), True)
+    wait_until_equal(lambda: "0.4" in leg.read_text(), True)
     page.locator(".panel-tab", has_text="Source").first.click()
     wait_for_text(page, "0.4")
     page.mouse.move(0, 0)  # the tooltip of an element below the pointer could cover the tab
     text.focus()
     text.press("Control+z")
     text.press("Control+s")
-    becomes(leg.read_text, LEG)
+    wait_until_equal(leg.read_text, LEG)
 
     page.locator(".panel-tab", has_text="Edit robot").first.click()
     undo = page.get_by_role("button", name="Undo the last written edit")
     undo.click()
-    becomes(lambda: "0.4" in leg.read_text(), True)
+    wait_until_equal(lambda: "0.4" in leg.read_text(), True)
     undo.click()
-    becomes(leg.read_text, LEG)
+    wait_until_equal(leg.read_text, LEG)
 
 
 def test_findings_completion_hover_definition_and_rename(start, open_page, file):
@@ -149,8 +149,8 @@ def test_findings_completion_hover_definition_and_rename(start, open_page, file)
     page.get_by_role("dialog", name="Rename leg to limb").get_by_role("button", name="Rename", exact=True).click()
     page.get_by_text("Renamed to limb in 2 files, not saved yet").wait_for()
     page.get_by_role("button", name="Save 2 files").click()
-    becomes(file.read_text, ROBOT.replace("xacro:leg", "xacro:limb"))
-    becomes((file.parent / "leg.xacro").read_text, LEG.replace('"leg"', '"limb"'))
+    wait_until_equal(file.read_text, ROBOT.replace("xacro:leg", "xacro:limb"))
+    wait_until_equal((file.parent / "leg.xacro").read_text, LEG.replace('"leg"', '"limb"'))
 
     go_to(text, 3)
     text.press("End")
@@ -184,7 +184,7 @@ def test_file_is_created_in_tree_and_escape_leaves_editor(start, open_page, file
     text.click(position={"x": 30, "y": 8})
     page.keyboard.insert_text("legs: 2\n")
     text.press("Control+s")
-    becomes((file.parent / "config" / "legs.yaml").read_text, "legs: 2\n")
+    wait_until_equal((file.parent / "config" / "legs.yaml").read_text, "legs: 2\n")
 
     text.press("Tab")
     wait_for_text(page, "legs: 2\n  ")
@@ -264,7 +264,7 @@ def test_urdf_is_converted_to_new_xacro_file(start, open_page, file):
     until(page, f"{EDITOR}.file.endsWith('plain.urdf.xacro')")
     wait_for_text(page, "xmlns:xacro")
     text.press("Control+s")
-    becomes(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
+    wait_until_equal(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
 
 
 def test_definitions_and_references_navigate_across_files(start, open_page, file):
@@ -329,7 +329,7 @@ def test_scene_follows_unsaved_text_and_keeps_last_valid_robot(start, open_page,
         text.press("Backspace")
     until(page, f"{EDITOR}.scene === 'shown'")
     text.press("Control+s")
-    becomes(lambda: "right" in file.read_text(), True)
+    wait_until_equal(lambda: "right" in file.read_text(), True)
     until(page, f"{EDITOR}.scene === null && lw.frames.right !== undefined")
     go_to(text, 4)
     text.press("Shift+ArrowDown")
@@ -350,7 +350,7 @@ def test_scene_edit_changes_unsaved_text_and_shares_undo(start, open_page, file)
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("tip", exact=True).locator("visible=true").first.click()
     page.get_by_role("button", name="Move and rotate the joint").click()
-    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    wait_until_equal(lambda: number(page, "xyz2").input_value(), "0")
     type_in(page, "xyz2", "0.4")
     page.get_by_role("button", name="Write", exact=True).click()
     page.get_by_text("Changed in the editor, not saved yet").wait_for()
@@ -443,7 +443,7 @@ def test_symbols_are_searched_in_file_and_workspace(start, open_page, file):
     names.filter(has_text="base").first.wait_for()
     assert names.all_inner_texts() == ["robot r", "xacro:include leg.xacro", "link base", "xacro:leg left"]
     search.fill("bas")
-    becomes(names.count, 1)
+    wait_until_equal(names.count, 1)
     assert violations(page, ".symbol-search") == []
     page.keyboard.press("Control+Shift+O")
     search.fill("name")

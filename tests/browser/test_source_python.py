@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.lsp.python.programs import installed_programs
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.browser.test_source_editor import EDITOR, LEG, ROBOT, choose, go_to, open_editor, wait_for_text
 
 pytestmark = [
@@ -102,7 +102,7 @@ def test_finding_is_fixed_and_file_is_formatted(start, open_page, package):
     wait_for_text(page, '("行走😀")\n        self.count')
     text.press("Control+s")
     formatted = WALKER.replace("import os\n", "").replace("; ", "\n        ")
-    becomes(lambda: (package / "walker.py").read_text(encoding="utf-8"), formatted.replace("steps\n", "steps\n"))
+    wait_until_equal(lambda: (package / "walker.py").read_text(encoding="utf-8"), formatted)
 
 
 def test_symbol_is_renamed_in_all_files_and_definition_opens(start, open_page, package):
@@ -115,7 +115,7 @@ def test_symbol_is_renamed_in_all_files_and_definition_opens(start, open_page, p
     go_to(text, 1, 5)
     text.press("F2")
     name = page.get_by_role("textbox", name="New name")
-    becomes(name.input_value, "steps")
+    wait_until_equal(name.input_value, "steps")
     name.fill("strides")
     name.press("Enter")
     preview = page.get_by_role("dialog", name="Rename steps to strides")
@@ -123,5 +123,5 @@ def test_symbol_is_renamed_in_all_files_and_definition_opens(start, open_page, p
     preview.get_by_role("button", name="Rename", exact=True).click()
     page.get_by_text("Renamed to strides in 2 files, not saved yet").wait_for()
     page.get_by_role("button", name="Save 2 files").click()
-    becomes((package / "gait.py").read_text, GAIT.replace("steps", "strides"))
-    becomes(lambda: (package / "walker.py").read_text(encoding="utf-8"), WALKER.replace("steps", "strides"))
+    wait_until_equal((package / "gait.py").read_text, GAIT.replace("steps", "strides"))
+    wait_until_equal(lambda: (package / "walker.py").read_text(encoding="utf-8"), WALKER.replace("steps", "strides"))

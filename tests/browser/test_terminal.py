@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.browser.axe import violations
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.test_description import open_panel
 
 pytestmark = [
@@ -137,7 +137,7 @@ def test_text_is_copied_and_pasted_by_keys(start, open_page, file):
     wait_for_text(page, "copy-2-me")
     page.locator(".terminal-screen:visible .xterm-screen").dblclick(position={"x": 20, "y": 8})
     page.keyboard.press("Control+Shift+C")
-    becomes(lambda: page.evaluate("navigator.clipboard.readText()"), "copy-2-me")
+    wait_until_equal(lambda: page.evaluate("navigator.clipboard.readText()"), "copy-2-me")
     page.keyboard.type("echo pasted-")
     page.keyboard.press("Control+Shift+V")
     page.keyboard.press("Enter")
@@ -157,7 +157,7 @@ def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_
     assert state(page, "panels.terminal.focused")
     assert page.locator("dialog").count() == 0
     page.keyboard.press("Control+Shift+M")
-    becomes(lambda: page.evaluate("document.activeElement.getAttribute('role')"), "tab")
+    wait_until_equal(lambda: page.evaluate("document.activeElement.getAttribute('role')"), "tab")
     page.keyboard.press("Enter")
     until(page, f"{TERMINAL}.focused")
 

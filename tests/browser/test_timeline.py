@@ -11,7 +11,7 @@ from playwright.sync_api import Page
 from linkwright.bag import BagWriter
 from linkwright.graph import DEFAULT_QOS
 from linkwright.messages import TFMessage, TransformBatch, get_message, serialize
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.images.test_images import image
 
 pytestmark = pytest.mark.browser
@@ -80,7 +80,7 @@ def wait_for_second(page: Page, second: int) -> None:
     """Wait until the frame and the image belong to a second."""
     until(page, f"Math.abs(lw.frames.tip?.position[0] - {second}) < 1e-6")
     corner = "window.linkwright.displays.find(({ drawn }) => drawn?.width === 4).drawn.corner"
-    becomes(lambda: page.evaluate(corner), [*color(second), 255])
+    wait_until_equal(lambda: page.evaluate(corner), [*color(second), 255])
 
 
 def test_seek_shows_frames_and_images_of_that_time(page: Page):

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.browser.conftest import SECONDS, becomes, until
+from tests.browser.conftest import SECONDS, until, wait_until_equal
 from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
@@ -66,7 +66,7 @@ def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     page = context.new_page()
     page.goto(viewer.url)
     wait_until_admitted(page)
-    becomes(lambda: page.url, url_without_query(viewer))
+    wait_until_equal(lambda: page.url, url_without_query(viewer))
     page.reload()
     wait_until_admitted(page)
     second = context.new_page()
@@ -74,12 +74,12 @@ def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     wait_until_admitted(second)
     # The request for separate displays stays in the address, and nothing else does.
     second.get_by_role("group", name="Displays").get_by_text("Own").click()
-    becomes(lambda: second.url, f"{url_without_query(viewer)}?displays=own")
+    wait_until_equal(lambda: second.url, f"{url_without_query(viewer)}?displays=own")
     wait_until_admitted(second)
     # An outdated token in an address does not lock the browser out.
     second.goto(f"{url_without_query(viewer)}?token=of-an-earlier-run")
     wait_until_admitted(second)
-    becomes(lambda: second.url, url_without_query(viewer))
+    wait_until_equal(lambda: second.url, url_without_query(viewer))
 
 
 def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_server):
@@ -110,7 +110,7 @@ def test_browser_without_token_shows_form_that_accepts_it(viewer, context):
     field = page.get_by_label("Address or token")
     field.fill("hello")
     field.press("Enter")
-    becomes(door.locator(".problem").inner_text, "This text contains no token.")
+    wait_until_equal(door.locator(".problem").inner_text, "This text contains no token.")
     field.fill(f"{url_without_query(viewer)}?token={'x' * 32}")
     field.press("Enter")
     door.get_by_text("This token is not valid", exact=False).wait_for()

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from tests.browser.arm_from_above import SCALE, TIP, ArmPage, open_scene
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -55,7 +55,7 @@ def test_selected_number_stays_selected_while_mouse_changes_it(scene):
     field = scene.page.locator(".row").filter(has=scene.page.get_by_text("Scale", exact=True)).locator("input")
     field.focus()
     scene.page.mouse.wheel(0, -120)
-    becomes(field.input_value, f"{SCALE * 1.12:g}")
+    wait_until_equal(field.input_value, f"{SCALE * 1.12:g}")
     scene.page.keyboard.type("40")  # replaces the number, although the number changed after it was selected
     scene.page.keyboard.press("Enter")
     until(scene.page, "lw.view.values.Scale === 40")
@@ -110,7 +110,7 @@ def test_views_are_saved_renamed_used_and_removed(scene):
     page.get_by_role("treeitem").filter(has_text="map").locator(".row-name").dblclick()
     until(page, "lw.view.type === 'TopDownOrtho'")
     assert state(page, "view.values")["Scale"] == SCALE
-    becomes(lambda: scene.saved_settings()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
+    wait_until_equal(lambda: scene.saved_settings()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
     views = scene.saved_settings()["Views"]
     assert [(view["Name"], view["Scale"]) for view in views["Saved"]] == [("map", SCALE)]
     page.get_by_role("button", name="Remove", exact=True).click()

@@ -11,7 +11,7 @@ from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, Durabilit
 from linkwright.messages import String, TFMessage, get_message, get_service
 from linkwright.page.protocol.simulation import ModelChoices
 from linkwright.simulation.page.modeling import entities
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.conftest import SECONDS, state, until, wait_until_equal
 from tests.browser.live import configuration
 from tests.waiting import wait_until
 
@@ -252,7 +252,7 @@ SENSING = """
     <sensor name="laser" type="ray"><visualize>true</visualize><ray><scan><horizontal><samples>8</samples>
       <min_angle>-3</min_angle><max_angle>3</max_angle></horizontal></scan><range><min>0.1</min><max>5</max></range></ray>
     </sensor>
-    <sensor name="eye" type="camera"><camera><clip><near>0.5</near><far>4</far></clip></camera></sensor>
+    <sensor name="camera" type="camera"><camera><clip><near>0.5</near><far>4</far></clip></camera></sensor>
   </link></model>
 </world>"""
 
@@ -269,12 +269,12 @@ def test_sensor_rays_and_frustums_follow_display_properties(live, open_page):
     scan = get_message("sensor_msgs/msg/LaserScan")(ranges=[4.0, 3.0, 2.0, float("inf"), float("-inf"), 1.0, 1.0, 1.0])
     scan.header.frame_id = "tower::top::laser"
     viewer.publish("/world_rays", scan, SENSOR_DATA_QOS)
-    becomes(lambda: drawn(page)["rays"], {"tower::top::laser": 8})
+    wait_until_equal(lambda: drawn(page)["rays"], {"tower::top::laser": 8})
 
     def choose(name: str, choice: str) -> None:
         viewer.run(lambda: viewer.viewer.displays[0].set_property((name,), choice))
 
     choose("Camera Frustums", "All")
-    becomes(lambda: drawn(page)["frustums"], ["tower::top::eye"])
+    wait_until_equal(lambda: drawn(page)["frustums"], ["tower::top::camera"])
     choose("Lidar Rays", "None")
-    becomes(lambda: drawn(page)["rays"], {})
+    wait_until_equal(lambda: drawn(page)["rays"], {})

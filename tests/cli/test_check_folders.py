@@ -177,7 +177,10 @@ def test_few_similar_findings_are_shown_separately(here, capsys):
 
 
 def test_checked_robot_is_freed_without_garbage_collector(here, monkeypatch):
-    """Count the robots when the next check begins; the garbage collector, which may not run for long, is off."""
+    """Count the robots when the next check begins.
+
+    The garbage collector, which may not run for long, is off.
+    """
     robot = _joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
     names = [f"r{number}.{ending}" for number in range(6) for ending in ("urdf", "urdf.xacro")]
     write(here, dict.fromkeys(names, robot))

@@ -293,15 +293,15 @@ def watched(graph: Graph) -> None:
     service = node.create_service("example_interfaces/srv/AddTwoInts", "sum", add)
     service.configure_introspection(node.get_clock(), SERVICES_QOS, ServiceIntrospectionState.CONTENTS)
     client = node.create_client("example_interfaces/srv/AddTwoInts", "sum")
-    answers = []
+    responses = []
 
     def ask() -> None:
         if graph.count_subscribers("/sum/_service_event"):
             client.call_async(client.srv_type.Request(a=2, b=3)).add_done_callback(answered)
 
     def answered(_: object) -> None:
-        answers.append(1)
-        if len(answers) == 3:
+        responses.append(1)
+        if len(responses) == 3:
             signal.raise_signal(signal.SIGINT)
 
     node.create_timer(0.05, ask)

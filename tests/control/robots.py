@@ -60,7 +60,10 @@ def read_hardware(text: str) -> tuple[list[HardwareDescription], list[str]]:
 def manager(
     graph: Graph, text: str, parameters: dict[str, Any] | None = None, **controller_parameters: dict[str, Any]
 ) -> Any:
-    """Return a manager of a robot; the parameters are for the manager's node and the nodes of its controllers."""
+    """Return a manager of a robot.
+
+    The parameters are for the manager's node and the nodes of its controllers.
+    """
     rules = ParameterRules()
     for name, values in controller_parameters.items():
         for key, value in values.items():

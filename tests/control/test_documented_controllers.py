@@ -60,17 +60,17 @@ def example(page: Path) -> Any:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
-async def test_documented_example_swings_joint(stand, page):
-    stand.joint("elbow", commands=("position",), position=1.0)
-    controller = stand.start(example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
-    angles = stand.record("std_msgs/msg/Float64", "/swing/angle")
-    await stand.step(controller, count=25)
-    assert stand.commands["elbow/position"].value == pytest.approx(1.3)
+async def test_documented_example_swings_joint(bench, page):
+    bench.joint("elbow", commands=("position",), position=1.0)
+    controller = bench.start(example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
+    angles = bench.record("std_msgs/msg/Float64", "/swing/angle")
+    await bench.step(controller, count=25)
+    assert bench.commands["elbow/position"].value == pytest.approx(1.3)
     assert angles[-1].data == pytest.approx(0.3)
-    stand.publish("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
-    await stand.step(controller, count=50)
-    assert stand.commands["elbow/position"].value == pytest.approx(0.9)
-    assert "'speed' is not a parameter of this controller" in [str(record.text) for record in stand.log]
+    bench.publish("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
+    await bench.step(controller, count=50)
+    assert bench.commands["elbow/position"].value == pytest.approx(0.9)
+    assert "'speed' is not a parameter of this controller" in [str(record.text) for record in bench.log]
 
 
 @pytest.fixture

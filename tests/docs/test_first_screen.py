@@ -105,8 +105,8 @@ def test_first_readme_commands_run_in_fresh_checkout(checkout: Path, newcomer: d
                     break
             else:
                 pytest.fail("".join(messages))
-            with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(match[1]) as answer:
-                assert answer.status == 200
+            with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(match[1]) as response:
+                assert response.status == 200
             wait_until((checkout.parent / "opened").is_file, what="the browser with the page")
         finally:
             os.killpg(shell.pid, signal.SIGINT)

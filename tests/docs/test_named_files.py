@@ -66,7 +66,10 @@ def other_names() -> str:
 
 
 def exists(word: str) -> bool:
-    """Return whether a module exists, or a path that ends with this text; the text before it may give the folder."""
+    """Return whether a module exists, or a path that ends with this text.
+
+    The text before it may give the folder.
+    """
     if f'"{word}"' in other_names() or f'"{word.split("/")[0]}":' in other_names():
         return True
     if _MODULE.fullmatch(word):

@@ -101,7 +101,10 @@ def _documented_names(action: argparse.Action) -> list[str]:
 
 
 def _common_text(block: Block) -> tuple[str, list[str]]:
-    """Return the language-independent part of a block; the program's output is in the language of the page."""
+    """Return the language-independent part of a block.
+
+    The program's output is in the language of the page.
+    """
     return block.language, [] if block.language == "text" else _without_comments(block.text)
 
 

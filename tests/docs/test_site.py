@@ -37,7 +37,10 @@ NAVIGATION = [
 
 
 def entries(items: list[Any]) -> Iterator[tuple[str, str]]:
-    """Return each title and page of a navigation; sections have no page, and pages may have no title."""
+    """Return each title and page of a navigation.
+
+    Sections have no page, and pages may have no title.
+    """
     for item in items:
         title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)
         if isinstance(below, list):

@@ -1,3 +1,5 @@
+"""Mass properties of bodies: sums, equivalent boxes and principal axes."""
+
 from __future__ import annotations
 
 import numpy as np

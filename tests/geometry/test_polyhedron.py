@@ -1,3 +1,5 @@
+"""Volume, mass properties and closedness of triangle surfaces."""
+
 from __future__ import annotations
 
 import numpy as np

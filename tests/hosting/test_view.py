@@ -37,7 +37,10 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 async def opened_view(
     path: Path, foxglove: int | None = None
 ) -> AsyncIterator[tuple[ModelView, Callable[[str], object]]]:
-    """Start a view, and return a function that waits for a printed text; the view must end without a failure."""
+    """Start a view, and return a function that waits for a printed text.
+
+    The view must end without a failure.
+    """
     out, err = io.StringIO(), io.StringIO()
     finder = PackageFinder(start=path.parent, environment={})
     options = HostOptions(port=0, open_browser=False, network=False)

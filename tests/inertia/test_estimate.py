@@ -1,3 +1,5 @@
+"""The estimate of a link's inertia from its shapes, mass and density."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Solids from mesh files, for estimates of inertia."""
+
 from __future__ import annotations
 
 import gc

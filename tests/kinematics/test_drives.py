@@ -34,7 +34,10 @@ def test_mecanum_drive_round_trip_keeps_motion(forward, sideways, turning):
 
 @given(SPEEDS, SPEEDS, SPEEDS)
 def test_mecanum_wheel_speeds_match_roller_geometry(forward, sideways, turning):
-    """A wheel at (x, y) moves with (forward - turning y, sideways + turning x); its roller absorbs the rest."""
+    """A wheel at (x, y) moves with (forward - turning y, sideways + turning x).
+
+    Its roller absorbs the rest.
+    """
     speeds = MecanumDrive(0.3 + 0.2, 0.1).wheel_speeds(forward, sideways, turning)
     for (x, y), speed in zip(((0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)), speeds, strict=True):
         along, across = forward - turning * y, sideways + turning * x

@@ -1,3 +1,5 @@
+"""`linkwright launch` from start to end: views, signals and errors."""
+
 from __future__ import annotations
 
 import os

@@ -122,7 +122,10 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     write: Write,
     tmp_path: Path,
 ) -> None:
-    """The build of ros_gz generates gz_sim.launch.py, so a clone lacks it. The clone's own files take precedence."""
+    """The build of ros_gz generates gz_sim.launch.py, so a clone lacks it.
+
+    The clone's own files take precedence.
+    """
     folder = write("ws/src/ros_gz/ros_gz_sim/package.xml", "<package><name>ros_gz_sim</name></package>").parent
     write("ws/src/ros_gz/ros_gz_sim/CMakeLists.txt", COMPILED)
     write("ws/src/ros_gz/ros_gz_sim/launch/gz_sim.launch.py.in", "@GZ_SIM_VER@")
@@ -252,7 +255,10 @@ async def test_gz_sim_command_starts_server(
 async def test_gazebo_gui_opens_one_viewer(
     launch: Callable[..., Any], simulators: Simulators, entities: list[LaunchDescriptionEntity], pages: int
 ) -> None:
-    """RViz's viewer is reused; otherwise a viewer runs as long as the program that opens the window."""
+    """RViz's viewer is reused.
+
+    Otherwise a viewer runs as long as the program that opens the window.
+    """
     simulators.spawned = []  # the server does not end
 
     def look(context: LaunchContext) -> None:

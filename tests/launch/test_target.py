@@ -1,3 +1,5 @@
+"""The launch file that the words of a command line name."""
+
 from __future__ import annotations
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+"""Message classes: constructors, defaults, assignment and comparison."""
+
 from array import array
 
 import numpy as np

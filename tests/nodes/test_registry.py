@@ -11,7 +11,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
 from linkwright.nodes import COMPONENTS, EXECUTABLES, NodeOptions
 from linkwright.nodes.options import NodeRegistry, SingleNode
-from tests.nodes.stage import Stage
+from tests.nodes.harness import NodeHarness
 
 
 class Blinker(SingleNode):
@@ -52,8 +52,8 @@ def test_builtin_nodes_can_be_imported(key: tuple[str, str]) -> None:
     assert callable(EXECUTABLES.get(key) or COMPONENTS[key])
 
 
-def test_node_of_another_package_is_started(installed: NodeRegistry, stage: Stage) -> None:
-    running = installed["my_robot", "blinker"](stage.graph, NodeOptions())
+def test_node_of_another_package_is_started(installed: NodeRegistry, harness: NodeHarness) -> None:
+    running = installed["my_robot", "blinker"](harness.graph, NodeOptions())
     assert running.node.get_name() == "blinker"
     running.close()
 

@@ -1,3 +1,5 @@
+"""The nodes of topic_tools: relay, throttle, drop, delay, mux, demux and transform."""
+
 from __future__ import annotations
 
 import pytest
@@ -162,8 +164,8 @@ async def test_mux_selects_adds_lists_and_deletes(test):
             request.topic = topic
         return await test.call(f"/mux/{verb}", request)
 
-    answer = await ask("select", "/second")
-    assert (answer.success, answer.prev_topic) == (True, "first")
+    response = await ask("select", "/second")
+    assert (response.success, response.prev_topic) == (True, "first")
     await publish_texts(test, "first", "1")
     await publish_texts(test, "second", "2")
     assert received_texts(out) == ["1", "2"]

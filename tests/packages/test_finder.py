@@ -1,3 +1,5 @@
+"""The package finder: sources, prefixes and their precedence."""
+
 from __future__ import annotations
 
 import os

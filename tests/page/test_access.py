@@ -1,3 +1,5 @@
+"""Who may connect to the page's server: tokens, hosts and origins."""
+
 from __future__ import annotations
 
 import hmac

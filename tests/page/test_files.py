@@ -1,3 +1,5 @@
+"""The files that the page may load: URLs, folders and limits."""
+
 from __future__ import annotations
 
 import os

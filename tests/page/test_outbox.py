@@ -1,3 +1,5 @@
+"""The outbox of a page: replaced payloads, order and held content."""
+
 from __future__ import annotations
 
 import asyncio

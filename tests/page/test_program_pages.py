@@ -54,13 +54,13 @@ def environment(world: World) -> dict[str, str]:
 
 
 async def policy(server: PageServer) -> str:
-    async with aiohttp.ClientSession() as browser, browser.get(server.url) as answer:
-        return answer.headers["Content-Security-Policy"]
+    async with aiohttp.ClientSession() as browser, browser.get(server.url) as response:
+        return response.headers["Content-Security-Policy"]
 
 
 async def status_of(address: str, line: bytes, **headers: str) -> int:
-    async with aiohttp.ClientSession() as session, session.post(address, data=line, headers=headers) as answer:
-        return answer.status
+    async with aiohttp.ClientSession() as session, session.post(address, data=line, headers=headers) as response:
+        return response.status
 
 
 async def test_program_page_is_shown_until_program_ends(tmp_path):

@@ -57,10 +57,10 @@ async def raw(viewer, target: str, *, host: str | None = None, method: str = "GE
     lines += [f"{name.replace('_', '-')}: {value}" for name, value in headers.items()]
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(("\r\n".join(lines) + "\r\n\r\n").encode())
-    answer = await asyncio.wait_for(reader.read(), SECONDS)
+    response = await asyncio.wait_for(reader.read(), SECONDS)
     writer.close()
     await writer.wait_closed()
-    head, _, body = answer.partition(b"\r\n\r\n")
+    head, _, body = response.partition(b"\r\n\r\n")
     return int(head.split(b" ")[1]), body.decode(errors="replace"), head.decode().lower()
 
 
@@ -423,8 +423,8 @@ async def test_rejected_request_closes_connection(served):
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(f"GET /ws HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode())
-    answer = await reader.read()
-    assert answer.startswith(b"HTTP/1.1 401")
+    response = await reader.read()
+    assert response.startswith(b"HTTP/1.1 401")
     writer.close()
 
 
@@ -446,8 +446,8 @@ async def test_oversized_requests_are_rejected(served, message):
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     with suppress(ConnectionError):
         writer.write(message)
-        answer = await reader.read(4096)
-        assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
+        response = await reader.read(4096)
+        assert response == b"" or response.split(b" ")[1][:1] == b"4"
     writer.close()
     assert memory() - before < 16 << 20
     assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
@@ -493,8 +493,8 @@ async def test_malformed_requests_are_not_logged(served, message, caplog):
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     with suppress(ConnectionError):
         writer.write(message)
-        answer = await reader.read(4096)
-        assert answer == b"" or answer.split(b" ")[1][:1] == b"4"
+        response = await reader.read(4096)
+        assert response == b"" or response.split(b" ")[1][:1] == b"4"
     writer.close()
     assert (await raw(served.viewer, mesh_url(served.viewer)))[0] == 200
     assert [record.getMessage() for record in caplog.records] == []

@@ -60,19 +60,19 @@ def delete_file(file: Path) -> None:
     file.unlink()
 
 
-async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
-    await client.send(kind, **fields)
-    reply: dict[str, Any] = await client.until(answer)
-    return reply
+async def request(client: Any, request_kind: str, response_kind: str, **fields: Any) -> dict[str, Any]:
+    await client.send(request_kind, **fields)
+    response: dict[str, Any] = await client.until(response_kind)
+    return response
 
 
-async def parts(client: Any, link: str) -> dict[str, Any]:
-    return await ask(client, "request_editable_parts", "editable_parts", display=DISPLAY, link=link)
+async def request_parts(client: Any, link: str) -> dict[str, Any]:
+    return await request(client, "request_editable_parts", "editable_parts", display=DISPLAY, link=link)
 
 
 async def preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
     question = {"index": 0, "xyz": None, "rpy": None, "together": False, **fields}
-    return await ask(
+    return await request(
         client, "preview_edit", "edit_preview", number=number, display=DISPLAY, part=part, name=name, **question
     )
 
@@ -81,9 +81,11 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        answer = await parts(client, "mast")
-        assert answer["refusal_reason"] == ""
-        part_facts = [(part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in answer["parts"]]
+        response = await request_parts(client, "mast")
+        assert response["refusal_reason"] == ""
+        part_facts = [
+            (part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in response["parts"]
+        ]
         assert part_facts == [
             ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
             ("axis", "turn", "continuous", [0, 0, 1], []),
@@ -91,14 +93,14 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
             ("collision", "mast", "mast.stl", [0, 0, 0], [0, 0, 0]),
             ("inertial", "mast", "1.5 kg", [0, 0, 0.4], [0, 0, 0]),
         ]
-        assert [part["written"] for part in answer["parts"]] == [
+        assert [part["written"] for part in response["parts"]] == [
             'xyz="0 0 ${height}" rpy="0 0 0.5"',
             'xyz="0 0 1"',
             'xyz="0 0 0.5"',
             "",
             'xyz="0 0 0.4"',
         ]
-        assert {(part["file"], part["line"]) for part in answer["parts"][:2]} == {(str(file), 19)}
+        assert {(part["file"], part["line"]) for part in response["parts"][:2]} == {(str(file), 19)}
 
 
 async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
@@ -110,11 +112,11 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        answer = await parts(client, "base")
-        assert "described in SDF" in answer["refusal_reason"]
+        response = await request_parts(client, "base")
+        assert "described in SDF" in response["refusal_reason"]
         refused = await preview(client, 1, "visual", "base", xyz=[0, 0, 1])
         assert refused["files"] == []
-        assert refused["refusal"]["message"] == answer["refusal_reason"]
+        assert refused["refusal"]["message"] == response["refusal_reason"]
 
 
 async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
@@ -129,15 +131,15 @@ async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
         assert [line for line in changed["diff"] if line[0] in "+-"] == [f"-{old}", f"+{new}"]
         assert content(file) == ROBOT
 
-        written = await ask(client, "apply_edit", "edit_written", number=7)
+        written = await request(client, "apply_edit", "edit_written", number=7)
         assert (written["files"], written["refusal"]) == ([str(file)], None)
         assert content(file) == ROBOT.replace(old, new)
         history = await client.until("edit_history")
         assert (history["can_undo"], history["can_redo"]) == (True, False)
 
-        await ask(client, "undo_edit", "edit_written")
+        await request(client, "undo_edit", "edit_written")
         assert content(file) == ROBOT
-        await ask(client, "redo_edit", "edit_written")
+        await request(client, "redo_edit", "edit_written")
         assert content(file) == ROBOT.replace(old, new)
 
 
@@ -146,7 +148,7 @@ async def test_only_previewed_edit_is_written(file: Path) -> None:
         describe(world, file)
         await client.until("description_changed")
         await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
-        assert (await ask(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
+        assert (await request(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
         assert content(file) == ROBOT
 
 
@@ -169,7 +171,7 @@ async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None
         await client.until("description_changed")
         await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
         write(file, ROBOT + "<!-- mine -->")
-        assert (await ask(client, "apply_edit", "edit_written", number=1))["refusal"]["code"] == "EDIT107"
+        assert (await request(client, "apply_edit", "edit_written", number=1))["refusal"]["code"] == "EDIT107"
         assert content(file) == ROBOT + "<!-- mine -->"
 
 
@@ -190,8 +192,8 @@ async def test_description_without_file_cannot_be_edited(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         world.describe(ARM)
         await client.until("description_changed")
-        answer = await parts(client, "base")
-        assert "linkwright view FILE" in answer["refusal_reason"]
+        response = await request_parts(client, "base")
+        assert "linkwright view FILE" in response["refusal_reason"]
         assert (await preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
 
 
@@ -206,7 +208,7 @@ async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pyte
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        assert "open on the machine with the files" in (await parts(client, "mast"))["refusal_reason"]
+        assert "open on the machine with the files" in (await request_parts(client, "mast"))["refusal_reason"]
         assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
-        assert (await ask(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
+        assert (await request(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
     assert content(file) == ROBOT

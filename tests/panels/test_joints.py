@@ -1,3 +1,5 @@
+"""The Joints panel: its rows, and the positions that it publishes."""
+
 from __future__ import annotations
 
 import math

@@ -307,13 +307,13 @@ async def test_recording_can_be_downloaded_completely_and_repeatedly():
         address = world.viewer.url.split(f"?{TOKEN_PARAMETER}")[0].rstrip("/") + file["url"]
         async with aiohttp.ClientSession() as session:
             for _ in range(2):
-                async with session.get(address) as answer:
-                    assert answer.status == 200
-                    assert answer.headers["Content-Disposition"].endswith(path.name)
-                    assert await answer.read() == path.read_bytes()
+                async with session.get(address) as response:
+                    assert response.status == 200
+                    assert response.headers["Content-Disposition"].endswith(path.name)
+                    assert await response.read() == path.read_bytes()
             path.unlink()
-            async with session.get(address) as answer:
-                assert answer.status == 404
+            async with session.get(address) as response:
+                assert response.status == 404
 
 
 @skipping

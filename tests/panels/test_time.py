@@ -1,3 +1,5 @@
+"""The Time panel: pauses, and synchronization with a topic."""
+
 from __future__ import annotations
 
 import asyncio

@@ -1,3 +1,5 @@
+"""The views of RViz: their properties, values and files."""
+
 from __future__ import annotations
 
 import pytest

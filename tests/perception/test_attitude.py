@@ -1,3 +1,5 @@
+"""Attitude from accelerometers, gyroscopes and magnetometers."""
+
 from __future__ import annotations
 
 from math import atan2, cos, pi, sin

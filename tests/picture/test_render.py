@@ -40,7 +40,10 @@ def test_link_order_does_not_affect_visibility() -> None:
 
 
 def test_coplanar_surfaces_do_not_flicker() -> None:
-    """Two meshes contain the same face with different rounding. The first mesh is visible everywhere."""
+    """Two meshes contain the same face with different rounding.
+
+    The first mesh is visible everywhere.
+    """
     text = urdf(
         link("base", BOX, RED, rpy="0.3 0.2 0.4"),
         link("other", BOX, BLUE, rpy="0.3 0.2 0.4"),

@@ -200,7 +200,10 @@ def program(text: str) -> str:
 
 
 def launch_file(*actions: str) -> str:
-    """Return a launch file with actions; ``rclpy_node(name, path)`` runs a program with respawn."""
+    """Return a launch file with actions.
+
+    ``rclpy_node(name, path)`` runs a program with respawn.
+    """
     lines = ",\n        ".join(actions)
     return (
         "import sys\nfrom launch import LaunchDescription\nfrom launch.actions import *\n"

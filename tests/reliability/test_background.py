@@ -52,7 +52,10 @@ def catches_interrupts(process: int) -> bool:
 
 
 def interrupt_when_ready(running: Running, text: str) -> int:
-    """Wait until a process handles SIGINT and has printed a text; interrupt it, and return its exit status."""
+    """Wait until a process handles SIGINT and has printed a text.
+
+    Interrupt it, and return its exit status.
+    """
     wait_until(lambda: catches_interrupts(running.process.pid), what=lambda: running.text)
     if text:
         running.wait_for(text)

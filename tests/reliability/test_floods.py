@@ -218,7 +218,10 @@ def test_service_answers_while_process_is_flooded(machine: Machine) -> None:
 
 
 def test_stopped_process_does_not_block_publisher(machine: Machine) -> None:
-    """While a process is stopped as by a debugger, the publisher continues. The resumed process gets new messages."""
+    """While a process is stopped as by a debugger, the publisher continues.
+
+    The resumed process gets new messages.
+    """
     talker = machine.program(
         """
         class Program(Node):

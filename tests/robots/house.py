@@ -85,7 +85,7 @@ class House(SteppedSimulation):
 
         def accepted(future: Any) -> None:
             self.goal = future.result()
-            self.goal.get_result_async().add_done_callback(lambda answer: results.append(answer.result()))
+            self.goal.get_result_async().add_done_callback(lambda response: results.append(response.result()))
 
         self._client.send_goal_async(goal).add_done_callback(accepted)
         return results

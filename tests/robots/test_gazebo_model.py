@@ -114,7 +114,10 @@ def test_optical_frames_look_along_sensor_x_axis() -> None:
 
 
 def height(robot: Robot, link: str) -> float:
-    """Return the height of a link's frame above the footprint in meters; the model's fixed joints are not rotated."""
+    """Return the height of a link's frame above the footprint in meters.
+
+    The model's fixed joints are not rotated.
+    """
     by_child = {joint.child: joint for joint in robot.joints.values()}
     above = 0.0
     while link in by_child:

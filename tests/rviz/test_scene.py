@@ -1,3 +1,5 @@
+"""Scenes from descriptions: shapes, poses, colors and meshes."""
+
 from __future__ import annotations
 
 import math

@@ -1,3 +1,5 @@
+"""The size of a robot, which sets the scale of the scene."""
+
 from __future__ import annotations
 
 import pytest

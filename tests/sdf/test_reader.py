@@ -364,7 +364,10 @@ def test_sdf_elements_without_effect_are_accepted():
 
 @given(st.text(alphabet="<>/=\"' sdfworlmk123.-", max_size=60), st.integers(0, 10**6))
 def test_random_worlds_are_read_without_exception(text, at):
-    """A random text is inserted into a world. If the result is XML, it is read without an exception."""
+    """A random text is inserted into a world.
+
+    If the result is XML, it is read without an exception.
+    """
     whole = (
         '<sdf version="1.6"><world name="w"><model name="m"><pose>0 0 0 0 0 0</pose><link name="l"><visual name="v">'
         "<geometry><box><size>1 1 1</size></box></geometry></visual></link></model></world></sdf>"

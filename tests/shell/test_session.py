@@ -188,7 +188,10 @@ def test_ctrl_c_reaches_command(tmp_path: Path) -> None:
 
 
 def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
-    """The signal comes from ``kill -INT``, or from the parent of the shell; a signal to the group arrives only once."""
+    """The signal comes from ``kill -INT``, or from the parent of the shell.
+
+    A signal to the group arrives only once.
+    """
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
     with in_shell(command, tmp_path) as process:
         assert process.stdout is not None

@@ -26,10 +26,10 @@ async def call_service(graph, server, service_type: str, service_name: str, /, *
     """Call a service, and advance the simulation so that it answers."""
     service = get_service(service_type)
     node = graph.create_node("asker")
-    answer = node.create_client(service, service_name).call_async(service.Request(**fields))
+    future = node.create_client(service, service_name).call_async(service.Request(**fields))
     await graph.settle()
     server.advance(SECOND // 1000)
-    response = await asyncio.wait_for(answer, SECONDS)
+    response = await asyncio.wait_for(future, SECONDS)
     node.destroy_node()
     return response
 
@@ -102,23 +102,23 @@ async def test_state_services_are_in_plugin_namespace():
     async with running_server(GROUND, robot(), STATE) as (server, graph, log):
         state = get_message("gazebo_msgs/msg/EntityState")(name="mbot")
         state.pose.position.x, state.pose.position.z = 2.0, 0.11
-        answer = await call_service(
+        response = await call_service(
             graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state
         )
-        assert answer.success
-        answer = await call_service(
+        assert response.success
+        response = await call_service(
             graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="mbot"
         )
-        assert answer.state.pose.position.x == pytest.approx(2.0, abs=1e-3)
-        answer = await call_service(
+        assert response.state.pose.position.x == pytest.approx(2.0, abs=1e-3)
+        response = await call_service(
             graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="who"
         )
-        assert not answer.success
+        assert not response.success
         state.name = "ground"
-        answer = await call_service(
+        response = await call_service(
             graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state
         )
-        assert not answer.success
+        assert not response.success
         assert [record.text for record in log] == [
             "get_entity_state: there is no model or link 'who'",
             "set_entity_state: 'ground' is fixed to the world (delete it, and spawn it again at the intended pose)",
@@ -130,13 +130,13 @@ async def test_service_sets_joint_positions():
     kind, name = "gazebo_msgs/srv/SetModelConfiguration", "/world/set_joint_positions"
     async with running_server(horizontal_arm, STATE) as (server, graph, _):
         fields = {"model_name": "arm", "joint_names": ["shoulder"]}
-        answer = await call_service(graph, server, kind, name, joint_positions=[0.7], **fields)
-        assert (answer.success, answer.status_message) == (True, "set_joint_positions: success")
+        response = await call_service(graph, server, kind, name, joint_positions=[0.7], **fields)
+        assert (response.success, response.status_message) == (True, "set_joint_positions: success")
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.7, abs=1e-6)
-        answer = await call_service(graph, server, kind, name, joint_positions=[0.7, 0.8], **fields)
-        assert (answer.success, "different lengths" in answer.status_message) == (False, True)
-        answer = await call_service(graph, server, kind, name, model_name="legs")
-        assert (answer.success, answer.status_message) == (False, "there is no model or link 'legs'")
+        response = await call_service(graph, server, kind, name, joint_positions=[0.7, 0.8], **fields)
+        assert (response.success, "different lengths" in response.status_message) == (False, True)
+        response = await call_service(graph, server, kind, name, model_name="legs")
+        assert (response.success, response.status_message) == (False, "there is no model or link 'legs'")
 
 
 async def test_services_return_properties_and_set_gravity():
@@ -145,21 +145,21 @@ async def test_services_return_properties_and_set_gravity():
         graph,
         log,
     ):
-        answer = await call_service(
+        response = await call_service(
             graph, server, "gazebo_msgs/srv/GetModelProperties", "/get_model_properties", model_name="arm"
         )
-        assert (answer.canonical_link_name, answer.joint_names) == ("arm::link", ["shoulder"])
+        assert (response.canonical_link_name, response.joint_names) == ("arm::link", ["shoulder"])
         kind = "gazebo_msgs/srv/GetLinkProperties"
-        answer = await call_service(graph, server, kind, "/get_link_properties", link_name="crate::link")
-        assert (answer.mass, answer.ixx, answer.gravity_mode) == (3.0, pytest.approx(0.5), True)
+        response = await call_service(graph, server, kind, "/get_link_properties", link_name="crate::link")
+        assert (response.mass, response.ixx, response.gravity_mode) == (3.0, pytest.approx(0.5), True)
         kind = "gazebo_msgs/srv/GetJointProperties"
-        answer = await call_service(graph, server, kind, "/get_joint_properties", joint_name="arm::shoulder")
-        assert (answer.type, len(answer.position), answer.success) == (answer.REVOLUTE, 1, True)
+        response = await call_service(graph, server, kind, "/get_joint_properties", joint_name="arm::shoulder")
+        assert (response.type, len(response.position), response.success) == (response.REVOLUTE, 1, True)
         kind = "gazebo_msgs/srv/SetPhysicsProperties"
         upward = get_message("geometry_msgs/msg/Vector3")(z=1.0)
         assert (await call_service(graph, server, kind, "/set_physics_properties", gravity=upward)).success
-        answer = await call_service(graph, server, "gazebo_msgs/srv/GetPhysicsProperties", "/get_physics_properties")
-        assert (answer.time_step, answer.gravity.z) == (0.001, 1.0)
+        response = await call_service(graph, server, "gazebo_msgs/srv/GetPhysicsProperties", "/get_physics_properties")
+        assert (response.time_step, response.gravity.z) == (0.001, 1.0)
         speed = server.simulation.link_velocity("crate::link")[0][2]
         server.advance(SECOND)
         assert server.simulation.link_velocity("crate::link")[0][2] - speed == pytest.approx(1.0, abs=1e-6)
@@ -172,10 +172,10 @@ async def test_services_change_link_and_joint_properties():
         kind = "gazebo_msgs/srv/SetLinkProperties"
         facts = {"mass": 6.0, "ixx": 1.0, "iyy": 1.0, "izz": 1.0, "gravity_mode": False, "link_name": "crate::link"}
         assert (await call_service(graph, server, kind, "/set_link_properties", **facts)).success
-        answer = await call_service(
+        response = await call_service(
             graph, server, "gazebo_msgs/srv/GetLinkProperties", "/get_link_properties", link_name="crate::link"
         )
-        assert (answer.mass, answer.izz, answer.gravity_mode) == (6.0, pytest.approx(1.0), False)
+        assert (response.mass, response.izz, response.gravity_mode) == (6.0, pytest.approx(1.0), False)
         height = server.simulation.model_pose("crate")[2]
         server.advance(SECOND // 10)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(height)
@@ -192,10 +192,10 @@ async def test_services_change_link_and_joint_properties():
         kind = "gazebo_msgs/srv/SetJointProperties"
         facts = {"joint_name": "arm::shoulder", "ode_joint_config": config}
         assert (await call_service(graph, server, kind, "/set_joint_properties", **facts)).success
-        answer = await call_service(
+        response = await call_service(
             graph, server, "gazebo_msgs/srv/GetJointProperties", "/get_joint_properties", joint_name="arm::shoulder"
         )
-        assert list(answer.damping) == [2.0]
+        assert list(response.damping) == [2.0]
         assert server.simulation.model.joint("arm::shoulder").range[1] == 0.25
         assert not log
 

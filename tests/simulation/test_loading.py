@@ -43,9 +43,9 @@ async def test_unchanged_models_keep_moving(tmp_path):
         simulation = session.simulator.server.simulation
         await step(session, 100)
         state = simulation.model_pose("one"), *map(tuple, simulation.link_velocity("one::link"))
-        answer = await load(session, tmp_path, "\n<!-- here -->", falling.replace("9 0 0 0", " 9.0  0 0 0"), other)
-        assert (answer.result.result, answer.result.error_message) == (answer.result.RESULT_OK, "")
-        assert (answer.world.name, answer.world.world_resource.uri) == ("test", str(tmp_path / "a.world"))
+        response = await load(session, tmp_path, "\n<!-- here -->", falling.replace("9 0 0 0", " 9.0  0 0 0"), other)
+        assert (response.result.result, response.result.error_message) == (response.result.RESULT_OK, "")
+        assert (response.world.name, response.world.world_resource.uri) == ("test", str(tmp_path / "a.world"))
         assert (simulation.model_pose("one"), *map(tuple, simulation.link_velocity("one::link"))) == state
         assert simulation.time == 100_000_000
         assert simulation.revision == 0, "MuJoCo's model was not compiled again"
@@ -171,9 +171,9 @@ async def test_invalid_world_changes_nothing(tmp_path, content, result, message)
         await step(session, 100)
         simulation.refresh()
         before = simulation.world, simulation.revision, simulation.data.qpos.tolist(), simulation.data.qvel.tolist()
-        answer = await load(session, tmp_path, content=content, fail_on_unsupported_element=True)
-        assert answer.result.result == result
-        assert message in answer.result.error_message
+        response = await load(session, tmp_path, content=content, fail_on_unsupported_element=True)
+        assert response.result.result == result
+        assert message in response.result.error_message
         simulation.refresh()
         after = simulation.world, simulation.revision, simulation.data.qpos.tolist(), simulation.data.qvel.tolist()
         assert after == before
@@ -182,22 +182,22 @@ async def test_invalid_world_changes_nothing(tmp_path, content, result, message)
 async def test_missing_assets_can_be_ignored(tmp_path):
     async with simulator(tmp_path) as session:
         missing = "<include><uri>model://nowhere_at_all</uri></include>"
-        answer = await load(session, tmp_path, missing, ignore_missing_or_unsupported_assets=True)
-        assert answer.result.result == answer.result.RESULT_OK
-        answer = await load(session, tmp_path, missing, box("one", "0 0 9 0 0 0"))
-        assert answer.result.result == answer.result.RESULT_OK, "the include was already missing"
+        response = await load(session, tmp_path, missing, ignore_missing_or_unsupported_assets=True)
+        assert response.result.result == response.result.RESULT_OK
+        response = await load(session, tmp_path, missing, box("one", "0 0 9 0 0 0"))
+        assert response.result.result == response.result.RESULT_OK, "the include was already missing"
 
 
 async def test_missing_world_and_unknown_file_are_reported(tmp_path):
     async with simulator(tmp_path) as session:
-        answer = await session.call("simulation_interfaces/srv/LoadWorld", "/load_world")
-        assert (answer.result.result, answer.result.error_message) == (
-            answer.NO_RESOURCE,
+        response = await session.call("simulation_interfaces/srv/LoadWorld", "/load_world")
+        assert (response.result.result, response.result.error_message) == (
+            response.NO_RESOURCE,
             "no world was specified (pass the path of a world file, or the text of a world)",
         )
         resource = get_message("simulation_interfaces/msg/Resource")(uri="no_such")
-        answer = await session.call("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=resource)
-        assert answer.result.result == answer.result.RESULT_NOT_FOUND
+        response = await session.call("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=resource)
+        assert response.result.result == response.result.RESULT_NOT_FOUND
 
 
 DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><left_joint>left_joint</left_joint>

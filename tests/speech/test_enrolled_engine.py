@@ -71,7 +71,10 @@ def test_word_is_recognized_in_noise(engine, name):
 
 
 def with_reverberation(samples, direct_db, seed):
-    """Add a reverberation of 0.4 s; its energy is `direct` dB below the energy of the direct sound."""
+    """Add a reverberation of 0.4 s.
+
+    Its energy is `direct` dB below the energy of the direct sound.
+    """
     at = np.arange(int(0.4 * RATE)) / RATE
     decay = np.random.default_rng(seed).normal(size=len(at)) * 10 ** (-3 * at / 0.4)
     decay *= 10 ** (-direct_db / 20) / np.sqrt(np.sum(decay**2))

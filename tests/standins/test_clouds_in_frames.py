@@ -1,3 +1,5 @@
+"""Point clouds in another frame, by the stand-in of tf2."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -77,7 +77,10 @@ def test_own_commands_accept_numpy_arrays(tmp_path):
 
 @pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 def test_field_rules_match_real_message_classes():
-    """Jazzy's classes check fields if an environment variable enables this. The setters are compared with Humble's."""
+    """Jazzy's classes check fields if an environment variable enables this.
+
+    The setters are compared with Humble's.
+    """
     real = outcomes(python=PYTHON, ROS_PYTHON_CHECK_FIELDS="1")
     assert outcomes(ROS_DISTRO="jazzy", ROS_PYTHON_CHECK_FIELDS="1") == real
     humble = outcomes(ROS_DISTRO="humble")

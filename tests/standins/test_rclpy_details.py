@@ -269,13 +269,13 @@ def test_feedback_arrives_before_goal_response(node):
 
     ActionServer(node, Fibonacci, "fibonacci", execute)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    answer = client.send_goal_async(Fibonacci.Goal(), feedback_callback=lambda _: order.append("feedback"))
-    answer.add_done_callback(lambda _: order.append("answer"))
+    response = client.send_goal_async(Fibonacci.Goal(), feedback_callback=lambda _: order.append("feedback"))
+    response.add_done_callback(lambda _: order.append("answer"))
     result = None
     while result is None or not result.done():
         rclpy.spin_once(node, timeout_sec=60)
-        if answer.done() and result is None:
-            result = answer.result().get_result_async()
+        if response.done() and result is None:
+            result = response.result().get_result_async()
     assert order == ["feedback", "answer"]
 
 

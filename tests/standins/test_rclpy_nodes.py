@@ -172,22 +172,22 @@ class TestMinimal:
         thread.join(SECONDS)
 
     def test_synchronous_call_works_in_callback_of_reentrant_group(self, node):
-        answers = []
+        responses = []
         node.create_service(AddTwoInts, "add", _sum)
         client = node.create_client(AddTwoInts, "add", callback_group=ReentrantCallbackGroup())
 
         def ask():
-            answers.append(client.call(AddTwoInts.Request(a=2, b=3)).sum)
+            responses.append(client.call(AddTwoInts.Request(a=2, b=3)).sum)
             timer.cancel()
 
         timer = node.create_timer(0.01, ask, callback_group=MutuallyExclusiveCallbackGroup())
         executor = MultiThreadedExecutor(3)
         executor.add_node(node)
         end = time.monotonic() + SECONDS
-        while not answers and time.monotonic() < end:
+        while not responses and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.1)
         executor.shutdown()
-        assert answers == [5]
+        assert responses == [5]
 
     def test_deadlocking_call_raises_runtime_error(self, node):
         node.create_service(AddTwoInts, "add", _sum)
@@ -197,27 +197,27 @@ class TestMinimal:
             rclpy.spin_once(node, timeout_sec=SECONDS)
 
     def test_coroutine_awaits_service_call(self, node):
-        answers = []
+        responses = []
         node.create_service(AddTwoInts, "add", _sum)
         client = node.create_client(AddTwoInts, "add")
 
         async def ask():
             timer.cancel()
             response = await client.call_async(AddTwoInts.Request(a=3, b=4))
-            answers.append(response.sum)
+            responses.append(response.sum)
 
         timer = node.create_timer(0.01, ask, callback_group=ReentrantCallbackGroup())
         end = time.monotonic() + SECONDS
-        while not answers and time.monotonic() < end:
+        while not responses and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
-        assert answers == [7]
+        assert responses == [7]
 
     def test_service_callback_can_be_a_coroutine(self, node):
-        async def answer(request, response):
+        async def multiply(request, response):
             response.sum = request.a * request.b
             return response
 
-        node.create_service(AddTwoInts, "multiply", answer)
+        node.create_service(AddTwoInts, "multiply", multiply)
         future = node.create_client(AddTwoInts, "multiply").call_async(AddTwoInts.Request(a=6, b=7))
         rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
         assert future.result().sum == 42

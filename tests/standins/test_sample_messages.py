@@ -1,3 +1,5 @@
+"""The sample messages of `test_msgs`, and the conversions of `rosidl_runtime_py`."""
+
 from __future__ import annotations
 
 from collections import OrderedDict

@@ -1,3 +1,5 @@
+"""Colors of a terminal, by the stand-in of osrf_pycommon."""
+
 from __future__ import annotations
 
 import pytest

@@ -229,7 +229,7 @@ class TestClient:
         buffer = tf2_ros.BufferCore()
         buffer.set_transform_static(transform("a", "b", Time()), "test")
 
-        def answer(handle):
+        def response(handle):
             result = LookupTransform.Result()
             goal = handle.request
             try:
@@ -241,7 +241,7 @@ class TestClient:
             handle.succeed()
             return result
 
-        rclpy.action.ActionServer(node, LookupTransform, "lookup", answer)
+        rclpy.action.ActionServer(node, LookupTransform, "lookup", response)
         executor = MultiThreadedExecutor(2)
         executor.add_node(node)
         thread = threading.Thread(target=executor.spin, daemon=True)

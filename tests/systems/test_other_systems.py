@@ -98,8 +98,8 @@ def test_viewer_serves_page_and_ctrl_c_ends_it(elsewhere):
     viewer = elsewhere("view", ROBOT, "--no-open")
     try:
         address = next(match[0] for line in viewer.stdout if (match := re.search(r"http://\S+", line)))
-        with urllib.request.urlopen(address, timeout=60) as answer:
-            assert b"<script" in answer.read()
+        with urllib.request.urlopen(address, timeout=60) as response:
+            assert b"<script" in response.read()
     finally:
         viewer.send_signal(signal.SIGINT)
         out, error = viewer.communicate(timeout=60)

@@ -354,7 +354,10 @@ def test_program_with_own_ctrl_c_handling_can_stop_robot(write):
 
 
 def test_after_ctrl_c_rclpy_publishes_nothing(write, capsys):
-    """The program fails as under ROS 2. The test does not fail, because it ends the program itself."""
+    """The program fails as under ROS 2.
+
+    The test does not fail, because it ends the program itself.
+    """
     messages, ended = run_until_ctrl_c(write(STOPS_AT_CTRL_C.format(options="")))
     assert messages == []
     assert ended.exit_code == 1

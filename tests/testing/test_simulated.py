@@ -76,7 +76,10 @@ def test_accelerating_wheels_match_odometry(linear, angular):
 
 
 def test_laser_measures_links_on_fixed_joints(tmp_path):
-    """gz merges these links with the laser's link, whose collisions rays ignore. Linkwright's server keeps them."""
+    """gz merges these links with the laser's link, whose collisions rays ignore.
+
+    Linkwright's server keeps them.
+    """
     robot = tmp_path / "robot.urdf"
     robot.write_text(LASER_BEHIND_A_POST, encoding="utf-8")
     with SteppedSimulation("empty", robot) as test:

@@ -118,7 +118,10 @@ def robot_text(*parts: str, version: str | None = None) -> str:
 
 
 def chain(*joints: str) -> str:
-    """Return links a, b, c, ... with joints between them; each joint is ``type`` or ``type: content``."""
+    """Return links a, b, c, ...
+
+    with joints between them; each joint is ``type`` or ``type: content``.
+    """
     letters = "abcdefghijklmnopqrstuvwxyz"
     text = "".join(f'<link name="{letter}"/>' for letter in letters[: len(joints) + 1])
     for place, joint in enumerate(joints):

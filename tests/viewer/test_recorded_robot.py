@@ -85,7 +85,10 @@ class Shown:
 
 
 async def test_link_poses_follow_recorded_joint_states(tmp_path: Path) -> None:
-    """Joints without messages are at zero, or at the center of limits that exclude zero. Mimic joints follow."""
+    """Joints without messages are at zero, or at the center of limits that exclude zero.
+
+    Mimic joints follow.
+    """
     with BagReader(recorded(tmp_path / "bag", [0.5, 1.0, 7.0])) as bag:
         shown = Shown(bag)
         for second, lift in ((2, 7.0), (0, 0.5), (1, 1.0)):

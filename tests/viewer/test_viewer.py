@@ -356,9 +356,9 @@ async def test_failed_feature_close_closes_socket(monkeypatch):
 
 async def test_missing_page_build_is_explained(tmp_path, monkeypatch):
     monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
-    async with open_world() as world, aiohttp.ClientSession() as session, session.get(world.viewer.url) as answer:
-        assert answer.status == 503
-        assert "make page" in await answer.text()
+    async with open_world() as world, aiohttp.ClientSession() as session, session.get(world.viewer.url) as response:
+        assert response.status == 503
+        assert "make page" in await response.text()
 
 
 async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
@@ -368,43 +368,43 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
     monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
     async with open_world() as world, aiohttp.ClientSession() as session:
         base = world.viewer.url.partition("?")[0]
-        async with session.get(world.viewer.url) as answer:
-            assert answer.status == 200
-            assert answer.headers["Cache-Control"] == "no-cache"
-            assert await answer.text() == "<!doctype html><title>x</title>"
-        async with session.head(base) as answer:
-            assert (answer.status, answer.headers["Content-Length"]) == (200, "31")
-        async with session.get(f"{base}assets/index-abc.js") as answer:
-            assert answer.status == 200
-            assert answer.content_type == "text/javascript"
-            assert "immutable" in answer.headers["Cache-Control"]
+        async with session.get(world.viewer.url) as response:
+            assert response.status == 200
+            assert response.headers["Cache-Control"] == "no-cache"
+            assert await response.text() == "<!doctype html><title>x</title>"
+        async with session.head(base) as response:
+            assert (response.status, response.headers["Content-Length"]) == (200, "31")
+        async with session.get(f"{base}assets/index-abc.js") as response:
+            assert response.status == 200
+            assert response.content_type == "text/javascript"
+            assert "immutable" in response.headers["Cache-Control"]
         (tmp_path / "assets" / "index-abc.js.gz").write_bytes(gzip.compress(b"export {}"))
-        async with session.get(f"{base}assets/index-abc.js") as answer:
-            assert answer.headers["Content-Encoding"] == "gzip"
-            assert answer.headers["Vary"] == "Accept-Encoding"
-            assert answer.content_type == "text/javascript"
-            assert await answer.text() == "export {}"
-        async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": "identity"}) as answer:
-            assert "Content-Encoding" not in answer.headers
-            assert await answer.text() == "export {}"
+        async with session.get(f"{base}assets/index-abc.js") as response:
+            assert response.headers["Content-Encoding"] == "gzip"
+            assert response.headers["Vary"] == "Accept-Encoding"
+            assert response.content_type == "text/javascript"
+            assert await response.text() == "export {}"
+        async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": "identity"}) as response:
+            assert "Content-Encoding" not in response.headers
+            assert await response.text() == "export {}"
         (tmp_path / "assets" / "index-abc.js").unlink()  # the build creates only compressed files
         for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
-            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": accepted}) as answer:
-                assert answer.headers.get("Content-Encoding") == encoding
-                assert answer.headers["Vary"] == "Accept-Encoding"
-                assert await answer.text() == "export {}"
-                known = {"Accept-Encoding": accepted, "If-None-Match": answer.headers["ETag"]}
-            async with session.get(f"{base}assets/index-abc.js", headers=known) as answer:
-                assert (answer.status, await answer.read()) == (304, b"")
-        async with session.get(f"{base}assets/gone.js") as answer:
-            assert answer.status == 404
-        async with session.get(base) as answer:
-            tag = answer.headers["ETag"]
-        async with session.get(base, headers={"If-None-Match": tag}) as answer:
-            assert (answer.status, await answer.read()) == (304, b"")
+            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": accepted}) as response:
+                assert response.headers.get("Content-Encoding") == encoding
+                assert response.headers["Vary"] == "Accept-Encoding"
+                assert await response.text() == "export {}"
+                known = {"Accept-Encoding": accepted, "If-None-Match": response.headers["ETag"]}
+            async with session.get(f"{base}assets/index-abc.js", headers=known) as response:
+                assert (response.status, await response.read()) == (304, b"")
+        async with session.get(f"{base}assets/gone.js") as response:
+            assert response.status == 404
+        async with session.get(base) as response:
+            tag = response.headers["ETag"]
+        async with session.get(base, headers={"If-None-Match": tag}) as response:
+            assert (response.status, await response.read()) == (304, b"")
         (tmp_path / "index.html").write_text("<!doctype html><title>built anew</title>", encoding="utf-8")
-        async with session.get(base, headers={"If-None-Match": tag}) as answer:
-            assert await answer.text() == "<!doctype html><title>built anew</title>"
+        async with session.get(base, headers={"If-None-Match": tag}) as response:
+            assert await response.text() == "<!doctype html><title>built anew</title>"
 
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)

@@ -96,8 +96,8 @@ async def _main() -> None:
         address = output.getvalue().partition("Viewer: ")[2].split()[0]
         server, _, token = address.partition("/?token=")
         async with aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True)) as session:
-            async with session.get(address) as answer:
-                await answer.read()
+            async with session.get(address) as response:
+                await response.read()
             origin = {"Origin": server}
             async with session.ws_connect(f"{server.replace('http', 'ws')}/ws?token={token}", headers=origin) as page:
                 await _until(page, _is_stored, "frame_table", "joints", "robot_scene", "binary")

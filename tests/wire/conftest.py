@@ -1,3 +1,5 @@
+"""Fixtures of the network tests: domains, processes and programs."""
+
 from __future__ import annotations
 
 import socket
@@ -71,7 +73,9 @@ def zenoh_variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: i
 
 
 class Process:
-    """The graph, executor and transport of a process in a domain. Several of them share one test process.
+    """The graph, executor and transport of a process in a domain.
+
+    Several of them share one test process.
 
     Args:
         name: the name of its node.
@@ -113,7 +117,10 @@ class Process:
 
 @pytest.fixture
 def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..., Process]]:
-    """Return a function that creates graphs; they meet only over the transport, and are closed after the test."""
+    """Return a function that creates graphs.
+
+    They meet only over the transport, and are closed after the test.
+    """
     pytest.importorskip(PACKAGES[wire], reason=f"{wire} is not installed")
     if wire == "zenoh":
         request.getfixturevalue("zenoh_variables")
@@ -130,7 +137,10 @@ def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..
 
 @pytest.fixture
 def programs() -> Iterator[Callable[..., Program]]:
-    """Return a function that starts a program of this folder in another process; it ends after the test."""
+    """Return a function that starts a program of this folder in another process.
+
+    It ends after the test.
+    """
     programs: list[Program] = []
 
     def start(name: str, *arguments: str, **environment: str) -> Program:

@@ -30,7 +30,10 @@ TYPES = ("sensor_msgs::srv::dds_::SetCameraInfo_Request_", "sensor_msgs::srv::dd
 
 
 class KnownPort(socket.socket):
-    """A socket on the port of the specification's discovery; Fast DDS listens there, and Linkwright does not."""
+    """A socket on the port of the specification's discovery.
+
+    Fast DDS listens there, and Linkwright does not.
+    """
 
     def bind(self, address: Any) -> None:
         super().bind((address[0], multicast_port(read_settings().domain_id) + 10 + 2 * 60))

@@ -85,7 +85,10 @@ class RealPeer:
         self.publishers["states_"].publish(JointState(name=names, position=positions))
 
     def publish_images(self, count: int, rate: float) -> None:
-        """Publish numbered images at a rate, from a thread as a camera driver does; the frame ID is the number."""
+        """Publish numbered images at a rate, from a thread as a camera driver does.
+
+        The frame ID is the number.
+        """
 
         def work() -> None:
             image = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
@@ -131,7 +134,10 @@ class RealPeer:
         return sum(text == answer for text, answer in zip(texts, self.echoes(service, texts), strict=True))
 
     def parameters_of(self, node: str) -> list[str]:
-        """Return the names of a node's parameters; none if it does not answer, as after it was killed."""
+        """Return the names of a node's parameters.
+
+        None if it does not answer, as after it was killed.
+        """
         client = AsyncParameterClient(self.node, node)
         assert client.wait_for_services(60)
         try:

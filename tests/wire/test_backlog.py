@@ -1,3 +1,5 @@
+"""The backlog of a writer: which samples wait for acknowledgments, and which are replaced."""
+
 from __future__ import annotations
 
 from linkwright.graph.qos.profile import QoSProfile
@@ -10,7 +12,10 @@ DEPTH = 2
 
 
 class Writer:
-    """A writer with a queue of two samples; the test decides when its readers have acknowledged."""
+    """A writer with a queue of two samples.
+
+    The test decides when its readers have acknowledged.
+    """
 
     def __init__(self) -> None:
         self.written: list[int] = []

@@ -1,3 +1,5 @@
+"""The discovery of nodes and endpoints of other processes over DDS."""
+
 from __future__ import annotations
 
 import socket
@@ -128,7 +130,10 @@ def test_fifty_nodes_with_services_are_discovered(processes, programs):
 
 
 def test_type_hash_of_fast_dds_request_is_not_service_hash():
-    """Request and response each announce their own hash; with Cyclone both announce the hash of the service."""
+    """Request and response each announce their own hash.
+
+    With Cyclone both announce the hash of the service.
+    """
     hashes = {
         guid[:2]: [
             RemoteEndpoint(guid, 1, guid, False, topic, type_name, QoSProfile(1), {"typehash": "RIHS01_1"})

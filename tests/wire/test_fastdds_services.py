@@ -53,12 +53,12 @@ def test_service_responds_with_identity_of_request(processes, programs, text):
     process.node.create_service(SetCameraInfo, "/our_echo", echo)
     peer = programs("fast_peer")
     process.spin_until(lambda: peer.ask("is_matched"))
-    answers = []
-    thread = threading.Thread(target=lambda: answers.append(peer.ask("call", text)))
+    responses = []
+    thread = threading.Thread(target=lambda: responses.append(peer.ask("call", text)))
     thread.start()
-    process.spin_until(lambda: answers)
+    process.spin_until(lambda: responses)
     thread.join()
-    assert answers == [text]
+    assert responses == [text]
     assert not process.warnings()
 
 
@@ -166,10 +166,10 @@ def test_replies_to_others_during_client_creation_are_ignored():
             return 1
 
     client = FastClient(CLIENT, EarlyReplyParticipant(), lambda _: False)
-    answers = []
-    client.send(camera_request("hej"), answers.append)
+    responses = []
+    client.send(camera_request("hej"), responses.append)
     client._on_data(replace(reply, inline=read_parameters(related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER))
-    assert [answer.status_message for answer in answers] == ["hej"]
+    assert [response.status_message for response in responses] == ["hej"]
 
 
 def test_error_in_participant_thread_is_reported_and_next_call_answered(processes, programs, monkeypatch):

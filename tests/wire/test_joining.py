@@ -1,3 +1,5 @@
+"""Joining a domain: settings, missing packages and errors."""
+
 from __future__ import annotations
 
 import socket

@@ -1,3 +1,5 @@
+"""The lifetime of a participant: threads, sockets, forks and exits."""
+
 from __future__ import annotations
 
 import os

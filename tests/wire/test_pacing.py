@@ -21,7 +21,10 @@ SMALL, LARGE = bytes(100), os.urandom(150_000)
 
 
 class Buffer:
-    """A receive buffer with a sequence of fill levels; the sender reads the level once a packet."""
+    """A receive buffer with a sequence of fill levels.
+
+    The sender reads the level once a packet.
+    """
 
     def __init__(self, *levels):
         self.levels = list(levels)

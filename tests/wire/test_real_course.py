@@ -40,7 +40,10 @@ def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureR
 
 @pytest.fixture
 def run(workspace):
-    """Return a function that starts an executable of the workspace in the real ROS 2; it is killed after the test."""
+    """Return a function that starts an executable of the workspace in the real ROS 2.
+
+    It is killed after the test.
+    """
     processes: list[subprocess.Popen[str]] = []
 
     def start(package: str, executable: str, *parameters: str) -> subprocess.Popen[str]:
@@ -117,9 +120,9 @@ def test_odometer_accumulates_distance_and_resets(processes, run):
         publisher.publish(message)
     process.spin_until(lambda: distances and distances[-1] == 2.0, SECONDS)
     process.spin_until(client.service_is_ready, SECONDS)
-    answer = client.call_async(trigger.Request())
-    process.spin_until(answer.done, SECONDS)
-    assert answer.result().success
+    response = client.call_async(trigger.Request())
+    process.spin_until(response.done, SECONDS)
+    assert response.result().success
 
 
 def odometry(x):

@@ -21,7 +21,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 @pytest.fixture
 def robot(programs):
-    """Start a robot with some variables of its environment; it listens and publishes when this returns."""
+    """Start a robot with some variables of its environment.
+
+    It listens and publishes when this returns.
+    """
     return lambda **variables: programs("real_peer", "robot", python=PYTHON, **variables)
 
 

@@ -1,3 +1,5 @@
+"""Services between processes over DDS."""
+
 from __future__ import annotations
 
 from linkwright.graph.actions.client import ActionClient

@@ -1,3 +1,5 @@
+"""The discovery settings that environment variables give."""
+
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET

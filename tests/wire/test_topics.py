@@ -1,3 +1,5 @@
+"""Topics between processes over DDS: delivery, latched messages and QoS."""
+
 from __future__ import annotations
 
 import platform
@@ -155,7 +157,10 @@ def test_incompatible_qos_is_reported_on_both_sides(processes):
     b.node.create_subscription(String, "chatter", print, QoSProfile(5))
 
     def reported(process):
-        """Return the warnings about a mismatch; another one may be about a remaining node of an earlier test."""
+        """Return the warnings about a mismatch.
+
+        Another one may be about a remaining node of an earlier test.
+        """
         return [text for text in process.warnings() if "incompatible QoS" in text]
 
     b.spin_until(lambda: reported(b))

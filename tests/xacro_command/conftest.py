@@ -1,3 +1,5 @@
+"""Fixtures of the tests of the `xacro` command."""
+
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -23,7 +25,10 @@ class Answer:
 
 @pytest.fixture
 def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
-    """Return a function that writes a robot's file into the current folder; it adds the tags of the root."""
+    """Return a function that writes a robot's file into the current folder.
+
+    It adds the tags of the root.
+    """
     monkeypatch.chdir(tmp_path)
 
     def file(name: str, inside: str) -> Path:

@@ -23,9 +23,9 @@ def printed(block: Block, run) -> tuple[str, str]:
         return out.getvalue(), ""
     _, verb, *words = shlex.split(block.text)
     assert verb == "xacro"
-    answer = run(*words)
-    assert answer.status == 0, answer.err
-    return answer.out, answer.err
+    result = run(*words)
+    assert result.status == 0, result.err
+    return result.out, result.err
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])

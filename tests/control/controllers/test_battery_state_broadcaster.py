@@ -21,11 +21,11 @@ BATTERIES = {
 
 
 @pytest.fixture
-def batteries(stand):
-    """Return a stand with two batteries, of which one only measures its voltage."""
-    stand.joint("left", battery_voltage=13.0, battery_current=-2.0, battery_charge=4.0, battery_power_supply_status=2.0)
-    stand.joint("right", battery_voltage=11.0)
-    return stand
+def batteries(bench):
+    """Return a test bench with two batteries, of which one only measures its voltage."""
+    bench.joint("left", battery_voltage=13.0, battery_current=-2.0, battery_charge=4.0, battery_power_supply_status=2.0)
+    bench.joint("right", battery_voltage=11.0)
+    return bench
 
 
 def test_broadcaster_is_found_by_type():
@@ -59,11 +59,11 @@ async def test_combined_state_has_means_and_sums_of_measured_quantities(batterie
     assert (state.location, isnan(state.temperature)) == ("slot 1, , ", True)
 
 
-async def test_sensor_name_publishes_voltage_only(stand):
-    stand.joint("pack", voltage=12.5)
-    broadcaster = stand.start(BatteryStateBroadcaster, sensor_name="pack", design_capacity=7.0)
-    messages = stand.record(STATE, "/controller/battery_state")
-    await stand.step(broadcaster)
+async def test_sensor_name_publishes_voltage_only(bench):
+    bench.joint("pack", voltage=12.5)
+    broadcaster = bench.start(BatteryStateBroadcaster, sensor_name="pack", design_capacity=7.0)
+    messages = bench.record(STATE, "/controller/battery_state")
+    await bench.step(broadcaster)
     assert (messages[-1].voltage, messages[-1].design_capacity, messages[-1].present) == (12.5, 7.0, True)
 
 
@@ -79,7 +79,7 @@ async def test_sensor_name_publishes_voltage_only(stand):
         ({"power_supply_technology": 9}, "'power_supply_technology' must be from 0 to 8, but it is 9"),
     ],
 )
-async def test_invalid_parameters_are_rejected(stand, settings, message):
+async def test_invalid_parameters_are_rejected(bench, settings, message):
     expected = LinkwrightError if "power_supply_technology" in settings else ControllerError
     with pytest.raises(expected, match=message):
-        stand.make(BatteryStateBroadcaster, **settings).on_configure()
+        bench.make(BatteryStateBroadcaster, **settings).on_configure()

@@ -1,3 +1,5 @@
+"""The differential drive controller: wheel speeds, odometry, limits and timeouts."""
+
 from __future__ import annotations
 
 from itertools import pairwise
@@ -21,19 +23,19 @@ ROBOT = {
 
 
 @pytest.fixture
-def wheels(stand):
-    """Return a stand with two wheels."""
+def wheels(bench):
+    """Return a test bench with two wheels."""
     for joint in ("left", "right"):
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
-    return stand
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    return bench
 
 
-def speeds(stand) -> list[float]:
-    return [stand.commands[f"{joint}/velocity"].value for joint in ("left", "right")]
+def speeds(bench) -> list[float]:
+    return [bench.commands[f"{joint}/velocity"].value for joint in ("left", "right")]
 
 
-def command(stand, *velocity: float, time_ns: int = 0) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(time_ns, *velocity))
+def command(bench, *velocity: float, time_ns: int = 0) -> None:
+    bench.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(time_ns, *velocity))
 
 
 def test_controller_is_found_by_type():
@@ -61,20 +63,20 @@ async def test_multipliers_correct_wheel_dimensions(wheels):
     assert speeds(wheels) == pytest.approx([0.8 / 0.05, 1.2 / 0.2])
 
 
-async def test_wheels_of_one_side_turn_equally_and_are_averaged(stand):
+async def test_wheels_of_one_side_turn_equally_and_are_averaged(bench):
     for joint in ("fl", "rl", "fr", "rr"):
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     four = ROBOT | {"left_wheel_names": ["fl", "rl"], "right_wheel_names": ["fr", "rr"], "publish_rate": 100.0}
-    controller = stand.start(DiffDriveController, NAME, **four)
-    odometry = stand.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
-    await stand.step(controller)
+    controller = bench.start(DiffDriveController, NAME, **four)
+    odometry = bench.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    await bench.step(controller)
     for joint, angle in (("fl", 1.0), ("rl", 3.0), ("fr", 2.0), ("rr", 2.0)):
-        stand.states[f"{joint}/position"].value = angle
-    await stand.step(controller)
+        bench.states[f"{joint}/position"].value = angle
+    await bench.step(controller)
     assert odometry[-1].pose.pose.position.x == pytest.approx(0.2)
-    command(stand, 1.0)
-    await stand.step(controller)
-    assert [command.value for command in stand.commands.values()] == pytest.approx([10.0] * 4)
+    command(bench, 1.0)
+    await bench.step(controller)
+    assert [command.value for command in bench.commands.values()] == pytest.approx([10.0] * 4)
 
 
 @pytest.mark.parametrize("feedback", [True, False], ids=["positions", "velocities"])
@@ -285,10 +287,10 @@ async def test_set_odometry_service_sets_pose(wheels):
     odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odom")
     client = wheels.node.create_client("control_msgs/srv/SetOdometry", f"/{NAME}/set_odometry")
     request = client.srv_type.Request(x=1.0, y=2.0, yaw=0.0)
-    answer = client.call_async(request)
+    response = client.call_async(request)
     await wheels.step(controller)
     await wheels.graph.settle()
-    assert answer.result().success
+    assert response.result().success
     assert (odometry[-1].pose.pose.position.x, odometry[-1].pose.pose.position.y) == (1.0, 2.0)
 
 

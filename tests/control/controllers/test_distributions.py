@@ -27,12 +27,12 @@ def parameter_names(controller) -> set[str]:
     ],
     ids=["drive", "trajectory", "car"],
 )
-async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, parameters, humble, jazzy):
+async def test_declared_parameters_match_distribution(bench, monkeypatch, kind, parameters, humble, jazzy):
     names_by_distribution = {}
     for distribution in ("", "humble", "jazzy"):
         monkeypatch.setenv("ROS_DISTRO", distribution)
         names_by_distribution[distribution] = parameter_names(
-            stand.make(controller_class(kind), f"it_{distribution}", **parameters)
+            bench.make(controller_class(kind), f"it_{distribution}", **parameters)
         )
     assert names_by_distribution[""] == names_by_distribution["humble"]
     assert names_by_distribution["humble"] >= humble
@@ -42,19 +42,19 @@ async def test_declared_parameters_match_distribution(stand, monkeypatch, kind, 
 
 
 @pytest.mark.parametrize(("distribution", "allowed"), [("humble", True), ("jazzy", False)])
-async def test_default_matches_distribution(stand, monkeypatch, distribution, allowed):
+async def test_default_matches_distribution(bench, monkeypatch, distribution, allowed):
     monkeypatch.setenv("ROS_DISTRO", distribution)
-    controller = stand.make(controller_class(TRAJECTORY), **ARM)
+    controller = bench.make(controller_class(TRAJECTORY), **ARM)
     assert controller.parameters.allow_nonzero_velocity_at_trajectory_end is allowed
-    controller = stand.make(controller_class(TRAJECTORY), "given", allow_nonzero_velocity_at_trajectory_end=True, **ARM)
+    controller = bench.make(controller_class(TRAJECTORY), "given", allow_nonzero_velocity_at_trajectory_end=True, **ARM)
     assert controller.parameters.allow_nonzero_velocity_at_trajectory_end
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])
-async def test_parameters_of_other_distribution_are_accepted(stand, monkeypatch, log, distribution):
+async def test_parameters_of_other_distribution_are_accepted(bench, monkeypatch, log, distribution):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     limits = {"linear": {"x": {"has_velocity_limits": True, "max_velocity": 1.0, "max_deceleration": -2.0}}}
-    controller = stand.make(controller_class(DRIVE), **WHEELS, **limits)
+    controller = bench.make(controller_class(DRIVE), **WHEELS, **limits)
     axis = controller.parameters.linear.x
     assert (axis.has_velocity_limits, axis.max_deceleration) == (True, -2.0)
     assert {"linear.x.has_velocity_limits", "linear.x.max_deceleration"} <= parameter_names(controller)

@@ -23,11 +23,11 @@ DESCRIPTION = """<robot name="r"><link name="base"/>
 
 
 @pytest.fixture
-def outputs(stand):
-    """Return a stand with a tool with two outputs and lamps with two inputs."""
-    stand.joint("tool", commands=("valve", "pump"), valve=0.0)
-    stand.joint("lamps", red=1.0, green=0.0)
-    return stand
+def outputs(bench):
+    """Return a test bench with a tool with two outputs and lamps with two inputs."""
+    bench.joint("tool", commands=("valve", "pump"), valve=0.0)
+    bench.joint("lamps", red=1.0, green=0.0)
+    return bench
 
 
 def group(**gpios: dict[str, float]):

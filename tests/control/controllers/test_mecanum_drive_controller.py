@@ -1,3 +1,5 @@
+"""The mecanum drive controller: wheel speeds, odometry, limits and timeouts."""
+
 from __future__ import annotations
 
 from math import cos, isnan, nan, pi, sin
@@ -17,19 +19,19 @@ ROBOT = {f"{corner}_wheel_command_joint_name": corner for corner in CORNERS} | {
 
 
 @pytest.fixture
-def wheels(stand):
-    """Return a stand with four wheels."""
+def wheels(bench):
+    """Return a test bench with four wheels."""
     for joint in CORNERS:
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
-    return stand
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    return bench
 
 
-def command(stand, forward: float, sideways: float, turning: float) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped_twist(0, forward, turning, sideways))
+def command(bench, forward: float, sideways: float, turning: float) -> None:
+    bench.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped_twist(0, forward, turning, sideways))
 
 
-def wheel_commands(stand) -> list[float]:
-    return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
+def wheel_commands(bench) -> list[float]:
+    return [bench.commands[f"{corner}/velocity"].value for corner in CORNERS]
 
 
 def test_controller_is_found_by_type():

@@ -19,19 +19,19 @@ ROBOT = {"wheel_names": list(WHEELS), "robot_radius": 0.2, "wheel_radius": 0.05}
 
 
 @pytest.fixture
-def wheels(stand):
-    """Return a stand with three wheels."""
+def wheels(bench):
+    """Return a test bench with three wheels."""
     for joint in WHEELS:
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
-    return stand
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    return bench
 
 
-def command(stand, forward: float, sideways: float, angular: float) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(0, forward, angular, sideways))
+def command(bench, forward: float, sideways: float, angular: float) -> None:
+    bench.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(0, forward, angular, sideways))
 
 
-def wheel_commands(stand) -> list[float]:
-    return [stand.commands[f"{wheel}/velocity"].value for wheel in WHEELS]
+def wheel_commands(bench) -> list[float]:
+    return [bench.commands[f"{wheel}/velocity"].value for wheel in WHEELS]
 
 
 def test_controller_is_found_by_type():

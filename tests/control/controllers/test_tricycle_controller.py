@@ -1,3 +1,5 @@
+"""The tricycle controller: steering, traction, odometry and timeouts."""
+
 from __future__ import annotations
 
 from itertools import pairwise
@@ -15,19 +17,19 @@ ROBOT = {"traction_joint_name": "wheel", "steering_joint_name": "steer", "wheelb
 
 
 @pytest.fixture
-def wheel(stand):
-    """Return a stand with a driven and steered wheel."""
-    stand.joint("wheel", commands=("velocity",), position=0.0, velocity=0.0)
-    stand.joint("steer", commands=("position",), position=0.0)
-    return stand
+def wheel(bench):
+    """Return a test bench with a driven and steered wheel."""
+    bench.joint("wheel", commands=("velocity",), position=0.0, velocity=0.0)
+    bench.joint("steer", commands=("position",), position=0.0)
+    return bench
 
 
-def command(stand, *velocity: float) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(0, *velocity))
+def command(bench, *velocity: float) -> None:
+    bench.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped_twist(0, *velocity))
 
 
-def wheel_command(stand) -> list[float]:
-    return [command.value for command in stand.commands.values()]
+def wheel_command(bench) -> list[float]:
+    return [command.value for command in bench.commands.values()]
 
 
 def test_controller_is_found_by_type():

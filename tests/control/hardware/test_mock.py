@@ -1,3 +1,5 @@
+"""The mock hardware: initial values, following, offsets and mimic joints."""
+
 from __future__ import annotations
 
 import pytest

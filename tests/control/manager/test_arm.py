@@ -22,7 +22,7 @@ class Robot:
     """A robot with an active trajectory controller."""
 
     def __init__(self, graph: Any) -> None:
-        self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
+        self.graph, self.node, self.time_ns = graph, graph.create_node("test_node"), 0
         text = robot(joint("hip", initial="0.2") + joint("knee"))
         self.manager = manager(graph, text, {"arm": {"type": TYPE}}, arm=SAID)
         assert self.manager.load("arm")

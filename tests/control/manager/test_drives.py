@@ -23,7 +23,7 @@ class Base:
     """A robot on two wheels with active controllers."""
 
     def __init__(self, graph: Any, types: dict[str, str], **parameters: dict[str, Any]) -> None:
-        self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
+        self.graph, self.node, self.time_ns = graph, graph.create_node("test_node"), 0
         self.manager = manager(
             graph, WHEELS, {name: {"type": controller_type} for name, controller_type in types.items()}, **parameters
         )

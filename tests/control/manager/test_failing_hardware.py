@@ -79,7 +79,7 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     words = ["--ros-args", "--params-file", str(path)]
     options = NodeOptions(parameters={"robot_description": TWO}, arguments=words, library=DescriptionLibrary())
     running = Ros2ControlNode(graph, options)
-    node = graph.create_node("audience")
+    node = graph.create_node("test_node")
     for name in ("hips", "knees"):
         assert (await call_service(graph, node, "load_controller", name=name)).ok
         assert (await call_service(graph, node, "configure_controller", name=name)).ok

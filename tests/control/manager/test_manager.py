@@ -1,3 +1,5 @@
+"""The controller manager: the lifecycle of controllers, and who owns an interface."""
+
 from __future__ import annotations
 
 from math import inf, nan

@@ -1,3 +1,5 @@
+"""`ros2_control_node`: its services, topics, descriptions and update cycles."""
+
 from __future__ import annotations
 
 import pytest
@@ -51,7 +53,7 @@ async def advance(graph, clock, count):
 
 async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_path, logged):
     node_under_test = start(graph, tmp_path, CONTROL)
-    node = graph.create_node("audience")
+    node = graph.create_node("test_node")
     states, activity = [], []
     node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -96,7 +98,7 @@ async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_
 
 async def test_process_remappings_apply_to_controllers(graph, clock, tmp_path):
     node_under_test = start(graph, tmp_path, CONTROL)
-    node = graph.create_node("audience")
+    node = graph.create_node("test_node")
     states = []
     node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
     publisher = node.create_publisher("std_msgs/msg/Float64MultiArray", "/wanted", 10)
@@ -114,7 +116,7 @@ async def test_process_remappings_apply_to_controllers(graph, clock, tmp_path):
 
 async def test_description_is_received_from_topic(graph, clock, tmp_path, logged):
     node_under_test = start(graph, tmp_path)
-    node = graph.create_node("audience")
+    node = graph.create_node("test_node")
     node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data=CONTROL))
     await graph.settle()
     components = (await call_service(graph, node, "list_hardware_components")).component
@@ -127,7 +129,7 @@ async def test_description_is_received_from_topic(graph, clock, tmp_path, logged
 
 async def test_malformed_description_is_reported_and_next_one_used(graph, clock, tmp_path, logged):
     node_under_test = start(graph, tmp_path)
-    publisher = graph.create_node("audience").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
+    publisher = graph.create_node("test_node").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
     publisher.publish(String(data="<robot"))
     await graph.settle()
     assert logged("ERROR")[0].startswith("The published robot description file (urdf) seems not to be genuine")
@@ -204,5 +206,5 @@ async def test_simulator_hardware_is_left_to_simulator(graph, tmp_path, logged, 
     start(graph, tmp_path, CONTROL.replace("mock_components/GenericSystem", plugin))
     await graph.settle()
     assert [line for line in logged("ERROR") if plugin in line]
-    services = graph.create_node("audience").get_service_names_and_types()
+    services = graph.create_node("test_node").get_service_names_and_types()
     assert not [name for name, _ in services if name.endswith("/list_controllers")]

@@ -1,3 +1,5 @@
+"""The spawner and the unspawner of controllers."""
+
 from __future__ import annotations
 
 import pytest

@@ -30,7 +30,7 @@ def test_timing_statistics():
 async def test_statistics_are_published_each_second_to_subscribers(graph, clock, tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
     node_under_test = start(graph, tmp_path, CONTROL)
-    node = graph.create_node("audience")
+    node = graph.create_node("test_node")
     assert (await call_service(graph, node, "load_controller", name="broadcaster")).ok
     assert (await call_service(graph, node, "configure_controller", name="broadcaster")).ok
     assert (await call_service(graph, node, "switch_controller", activate_controllers=["broadcaster"], strictness=2)).ok

@@ -42,14 +42,14 @@ def terminal() -> Iterator[tuple[int, int]]:
 class Driver:
     """A typing user, with the published velocities and the printed text."""
 
-    def __init__(self, stage, typing_end, program_end, kind=TWIST, **parameters):
-        self.stage, self.typing_end, self.program_end = stage, typing_end, program_end
+    def __init__(self, harness, typing_end, program_end, kind=TWIST, **parameters):
+        self.harness, self.typing_end, self.program_end = harness, typing_end, program_end
         self.messages, self.printed = [], []
         self.closed = False
         if kind:
-            stage.node.create_subscription(kind, "/cmd_vel", self.messages.append, 10)
+            harness.node.create_subscription(kind, "/cmd_vel", self.messages.append, 10)
         options = NodeOptions(parameters=parameters, output=self.printed.append, terminal=program_end)
-        self.node = TeleopTwistKeyboard(stage.graph, options)
+        self.node = TeleopTwistKeyboard(harness.graph, options)
 
     async def type(self, text, messages):
         """Press keys, wait for a number of messages, and return the last as x, y, z, yaw rate."""
@@ -68,11 +68,11 @@ class Driver:
 
 
 @pytest.fixture
-def start(stage, terminal):
+def start(harness, terminal):
     drivers = []
 
     def driver(**options):
-        drivers.append(Driver(stage, *terminal, **options))
+        drivers.append(Driver(harness, *terminal, **options))
         return drivers[-1]
 
     yield driver
@@ -114,52 +114,52 @@ async def test_arrow_keys_stop_robot(start):
     assert list(keys_in("\x1b[1;5Ai\x1b")) == ["\x1b[1;5A", "i", "\x1b"]
 
 
-async def test_message_type_matches_subscriber(start, stage):
+async def test_message_type_matches_subscriber(start, harness):
     driver = start(kind=TWIST_STAMPED, frame_id="base_link")
     await driver.type("i", 1)
     assert driver.messages[0].header.frame_id == "base_link"
-    assert driver.messages[0].header.stamp.sec == stage.clock.now_ns() // 10**9
+    assert driver.messages[0].header.stamp.sec == harness.clock.now_ns() // 10**9
 
 
-async def test_message_type_follows_late_subscriber(start, stage):
+async def test_message_type_follows_late_subscriber(start, harness):
     driver = start(kind=None)
-    stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.messages.append, 10)
-    await stage.clock.advance(0.6)
+    harness.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.messages.append, 10)
+    await harness.clock.advance(0.6)
     await driver.type("i", 1)
 
 
 @pytest.mark.parametrize(("stamped", "kind"), [(True, TWIST_STAMPED), (False, TWIST)])
-async def test_message_type_matches_stamped_parameter(start, stage, stamped, kind):
+async def test_message_type_matches_stamped_parameter(start, harness, stamped, kind):
     start(kind=None, stamped=stamped)
-    assert [endpoint.type_name for endpoint in stage.graph.endpoints() if endpoint.name == "/cmd_vel"] == [kind]
+    assert [endpoint.type_name for endpoint in harness.graph.endpoints() if endpoint.name == "/cmd_vel"] == [kind]
 
 
-async def test_key_timeout_stops_robot(start, stage):
+async def test_key_timeout_stops_robot(start, harness):
     driver = start(key_timeout=0.6)
     await driver.type("i", 1)
-    await stage.clock.advance(0.5)
+    await harness.clock.advance(0.5)
     await driver.type("i", 2)
-    await stage.clock.advance(0.5)
+    await harness.clock.advance(0.5)
     assert len(driver.messages) == 2
-    await stage.clock.advance(0.2)
+    await harness.clock.advance(0.2)
     assert driver.last() == (0, 0, 0, 0)
-    await stage.clock.advance(5.0)
+    await harness.clock.advance(5.0)
     assert len(driver.messages) == 3, "the robot is stopped only once"
 
 
-async def test_repeat_rate_republishes_velocity(start, stage):
+async def test_repeat_rate_republishes_velocity(start, harness):
     driver = start(repeat_rate=10.0)
     await driver.type("u", 1)
-    await stage.clock.advance(1.05)
+    await harness.clock.advance(1.05)
     assert len(driver.messages) == 11
     assert driver.last() == (0.5, 0, 0, 1)
 
 
-async def test_missing_subscriber_is_reported_once(start, stage, logged):
+async def test_missing_subscriber_is_reported_once(start, harness, logged):
     driver = start(kind=None)
     os.write(driver.typing_end, b"i")
     await eventually(lambda: driver.node._direction.x == 1.0)
-    await stage.clock.advance(3.0)
+    await harness.clock.advance(3.0)
     assert logged("WARN") == ["no node subscribes to /cmd_vel; run `linkwright doctor` for details"]
 
 
@@ -177,7 +177,7 @@ async def test_exit_stops_robot_and_restores_terminal(start, end):
         os.write(driver.typing_end, end.encode())
     await eventually(driver.node.finished.done)
     assert driver.node.finished.result() == 0
-    await driver.stage.graph.settle()
+    await driver.harness.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
     assert end == "closed" or echoes(driver.program_end)
 
@@ -186,21 +186,21 @@ async def test_closing_node_stops_robot(start):
     driver = start()
     await driver.type("i", 1)
     driver.close()
-    await driver.stage.graph.settle()
+    await driver.harness.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
     assert echoes(driver.program_end)
 
 
-async def test_missing_terminal_is_reported(stage):
+async def test_missing_terminal_is_reported(harness):
     with pytest.raises(LinkwrightError) as error:
-        TeleopTwistKeyboard(stage.graph, NodeOptions())
+        TeleopTwistKeyboard(harness.graph, NodeOptions())
     assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE901"]
-    assert stage.graph.topics().get("/cmd_vel") is None
+    assert harness.graph.topics().get("/cmd_vel") is None
 
 
-async def test_negative_speed_is_rejected(stage):
+async def test_negative_speed_is_rejected(harness):
     with pytest.raises(LinkwrightError) as error:
-        TeleopTwistKeyboard(stage.graph, NodeOptions(parameters={"speed": -1.0}))
+        TeleopTwistKeyboard(harness.graph, NodeOptions(parameters={"speed": -1.0}))
     assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE902"]
 
 

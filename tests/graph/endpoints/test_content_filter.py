@@ -1,3 +1,5 @@
+"""Content filters of subscriptions: their expressions, and the messages that pass."""
+
 from contextlib import suppress
 
 import pytest

@@ -1,3 +1,5 @@
+"""Events of endpoints: incompatible QoS, matches, deadlines and liveliness."""
+
 import pytest
 
 from linkwright.graph import (

@@ -1,3 +1,5 @@
+"""The events that services publish about their requests and responses."""
+
 import pytest
 
 from linkwright.graph import InvalidHandleError

@@ -1,3 +1,5 @@
+"""Services and clients within one graph."""
+
 import asyncio
 import threading
 

@@ -1,3 +1,5 @@
+"""Publishers and subscriptions within one graph: order, queues and latched messages."""
+
 import asyncio
 
 import pytest

@@ -258,37 +258,37 @@ async def test_requests_use_transport_without_local_server(graph):
     node = graph.create_node("node")
     client = node.create_client(Trigger, "trigger")
     early = client.call_async(Trigger.Request())
-    answers, forgotten = [], []
+    responses, forgotten = [], []
 
     class RemoteServer:
-        def send(self, request, answer, number):
-            answers.append(answer)
+        def send(self, request, response, number):
+            responses.append(response)
             return lambda: forgotten.append(request)
 
     assert not client.service_is_ready()
     client.set_remote_service(RemoteServer())
     assert client.service_is_ready()
     late = client.call_async(Trigger.Request())
-    assert len(answers) == 2
-    for number, answer in enumerate(answers):
-        answer(Trigger.Response(message=str(number)))
-        answer(Trigger.Response(message="again"))
+    assert len(responses) == 2
+    for number, response in enumerate(responses):
+        response(Trigger.Response(message=str(number)))
+        response(Trigger.Response(message="again"))
     assert ((await early).message, (await late).message) == ("0", "1")
     given_up = client.call_async(Trigger.Request())
     client.remove_pending_request(given_up)
     assert len(forgotten) == 1
     node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="here"))
     assert (await client.call_async(Trigger.Request())).message == "here"
-    assert len(answers) == 3
+    assert len(responses) == 3
 
 
 async def test_incoming_requests_are_answered(graph):
     node = graph.create_node("node")
     service = node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="yes"))
-    answers = []
-    service.receive(Trigger.Request(), answers.append)
+    responses = []
+    service.receive(Trigger.Request(), responses.append)
     await graph.settle()
-    assert [answer.message for answer in answers] == ["yes"]
+    assert [response.message for response in responses] == ["yes"]
 
 
 async def test_graph_queries_include_local_and_remote_endpoints(graph, transport):

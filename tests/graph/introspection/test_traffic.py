@@ -1,3 +1,5 @@
+"""The measured rate and bandwidth of a topic."""
+
 from __future__ import annotations
 
 import pytest

@@ -21,10 +21,10 @@ async def request_description(graph: Graph, node: Node, **request: Any) -> Any:
     asking = graph.create_node("asking")
     service = get_service("type_description_interfaces/srv/GetTypeDescription")
     client = asking.create_client(service, f"{node.get_fully_qualified_name()}/get_type_description")
-    answer = client.call_async(service.Request(**request))
+    response = client.call_async(service.Request(**request))
     await graph.settle()
     asking.destroy_node()
-    return answer.result()
+    return response.result()
 
 
 async def test_message_description_includes_nested_types(graph: Graph) -> None:

@@ -1,3 +1,5 @@
+"""Managed nodes: transitions, callbacks, errors and lifecycle publishers."""
+
 from __future__ import annotations
 
 import pytest

@@ -1,3 +1,5 @@
+"""The log: console formats, colors, files, levels and `/rosout`."""
+
 from __future__ import annotations
 
 import io
@@ -239,12 +241,12 @@ async def test_logger_level_services_set_and_get_levels(graph):
     set_levels = asking.create_client(get_service("rcl_interfaces/srv/SetLoggerLevels"), "/node/set_logger_levels")
     get_levels = asking.create_client(get_service("rcl_interfaces/srv/GetLoggerLevels"), "/node/get_logger_levels")
     level = get_message("rcl_interfaces/msg/LoggerLevel")
-    answer = set_levels.call_async(
+    response = set_levels.call_async(
         set_levels.srv_type.Request(levels=[level(name="node", level=10), level(name="node", level=11)])
     )
     await graph.settle()
-    assert [result.successful for result in answer.result().results] == [True, False]
+    assert [result.successful for result in response.result().results] == [True, False]
     assert node.get_logger().level is LogLevel.DEBUG
-    answer = get_levels.call_async(get_levels.srv_type.Request(names=["node", "x"]))
+    response = get_levels.call_async(get_levels.srv_type.Request(names=["node", "x"]))
     await graph.settle()
-    assert [(level.name, level.level) for level in answer.result().levels] == [("node", 10), ("x", 0)]
+    assert [(level.name, level.level) for level in response.result().levels] == [("node", 10), ("x", 0)]

@@ -1,3 +1,5 @@
+"""The dispatch of callbacks: fairness, reproducible order and callback groups."""
+
 import asyncio
 import gc
 import random

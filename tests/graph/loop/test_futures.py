@@ -1,3 +1,5 @@
+"""Futures: results, errors, cancellation and threads."""
+
 import asyncio
 import threading
 

@@ -1,3 +1,5 @@
+"""Timers: periods, order, resets and cancellation."""
+
 import asyncio
 
 import pytest

@@ -1,3 +1,5 @@
+"""Parameter files: values, nested names and node name wildcards."""
+
 from __future__ import annotations
 
 import math

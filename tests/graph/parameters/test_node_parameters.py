@@ -1,3 +1,5 @@
+"""Parameters of a node: declaration, overrides, types, ranges and callbacks."""
+
 from __future__ import annotations
 
 import pytest

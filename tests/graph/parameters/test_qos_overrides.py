@@ -1,3 +1,5 @@
+"""QoS profiles that parameters override."""
+
 from __future__ import annotations
 
 import pytest

@@ -1,3 +1,5 @@
+"""QoS profiles, and which of them are compatible."""
+
 import itertools
 
 import pytest

@@ -1,3 +1,5 @@
+"""The QoS profile that fits the publishers of a topic."""
+
 from __future__ import annotations
 
 from linkwright.graph.qos.compatibility import fit

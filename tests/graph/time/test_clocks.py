@@ -1,3 +1,5 @@
+"""Times, durations, clocks, simulated time and rates."""
+
 import asyncio
 import threading
 import time

@@ -1,3 +1,5 @@
+"""Alarms of an event loop with finer resolution than its own timers."""
+
 from __future__ import annotations
 
 import asyncio

@@ -1,3 +1,5 @@
+"""The transform buffer: the forest of frames, snapshots and ages."""
+
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""Transform lookups: interpolation, extrapolation and errors."""
+
 from __future__ import annotations
 
 from math import cos, inf, nan, pi, sin, sqrt

@@ -1,3 +1,5 @@
+"""Points, vectors, poses, covariances and wrenches in another frame."""
+
 from __future__ import annotations
 
 from copy import deepcopy

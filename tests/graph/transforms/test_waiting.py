@@ -1,3 +1,5 @@
+"""Lookups that wait for a transform, listeners and broadcasters."""
+
 from __future__ import annotations
 
 import asyncio
@@ -71,9 +73,9 @@ async def test_buffer_offers_frame_graph_service_and_clears_on_time_jump_back(gr
     buffer = Buffer(node=node)
     buffer.set_transform(stamped("map", "base", 1), "me")
     client = graph.create_node("asking").create_client(get_service("tf2_msgs/srv/FrameGraph"), "/tf2_frames")
-    answer = client.call_async(client.srv_type.Request())
+    response = client.call_async(client.srv_type.Request())
     await graph.settle()
-    assert answer.result().frame_yaml.startswith("base: \n  parent: 'map'\n")
+    assert response.result().frame_yaml.startswith("base: \n  parent: 'map'\n")
     buffer.set_transform(stamped("", "base", 1), "me")
     assert log[-1].node == "node.tf2"
     assert log[-1].text.startswith("TF_NO_FRAME_ID")

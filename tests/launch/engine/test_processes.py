@@ -1,3 +1,5 @@
+"""Processes that a launch starts: output, exits, environment and signals."""
+
 from __future__ import annotations
 
 import os

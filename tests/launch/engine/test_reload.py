@@ -1,3 +1,5 @@
+"""Descriptions that a launch reloads when their files change."""
+
 from __future__ import annotations
 
 import asyncio

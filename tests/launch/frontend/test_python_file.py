@@ -1,3 +1,5 @@
+"""Launch files in Python: loading, and the location of errors."""
+
 from __future__ import annotations
 
 import sys

@@ -1,3 +1,5 @@
+"""Actions of launch: conditions, arguments, configurations, groups and includes."""
+
 from __future__ import annotations
 
 import asyncio

@@ -1,3 +1,5 @@
+"""Substitutions of launch: their values, and the errors that they report."""
+
 from __future__ import annotations
 
 import os

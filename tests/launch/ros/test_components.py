@@ -1,3 +1,5 @@
+"""Component containers, and the nodes that a launch loads into them."""
+
 from __future__ import annotations
 
 import time
@@ -200,7 +202,7 @@ class TestContainers:
         assert "there are now at least 2 nodes with the name /box created within this launch context" in result.err
 
     async def test_container_lists_and_unloads_nodes(self, launch) -> None:
-        answers: list[Any] = []
+        responses: list[Any] = []
 
         def ask(context: LaunchContext) -> None:
             node = context.session.host.launcher_node
@@ -216,16 +218,16 @@ class TestContainers:
                     request = client.srv_type.Request()
                     if fill is not None:
                         request.unique_id = fill
-                    answers.append(await client.call_async(request))
+                    responses.append(await client.call_async(request))
 
             context.session.spawn(work())
 
         await launch(
             container(talker(name="a"), talker(name="b")),
             when(printed("Loaded node '/b'"), OpaqueFunction(function=ask)),
-            ends_when(lambda _: len(answers) == 4),
+            ends_when(lambda _: len(responses) == 4),
         )
-        listed, missing, unloaded, rest = answers
+        listed, missing, unloaded, rest = responses
         assert list(listed.full_node_names) == ["/a", "/b"]
         assert list(listed.unique_ids) == [1, 2]
         assert missing.success is False

@@ -1,3 +1,5 @@
+"""Lifecycle nodes of launch: transitions, events and sequences."""
+
 from __future__ import annotations
 
 from importlib.metadata import EntryPoint

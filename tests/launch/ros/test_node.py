@@ -1,3 +1,5 @@
+"""The `Node` action: nodes in processes, and hosted nodes."""
+
 from __future__ import annotations
 
 import json

@@ -1,3 +1,5 @@
+"""Parameters of launched nodes: values, types and files."""
+
 from __future__ import annotations
 
 import io

@@ -87,7 +87,10 @@ def interpreter(name: str) -> str | None:
 
 
 def run_in_situation(name: str, arguments: list[str], folder: Path, limits: Limits, **more: Any) -> Outcome:
-    """Run a program in the sandbox of a situation. The word PYTHON among the arguments becomes its Python."""
+    """Run a program in the sandbox of a situation.
+
+    The word PYTHON among the arguments becomes its Python.
+    """
     request = {"arguments": arguments, "folder": str(folder), "limits": asdict(limits), **more}
     if os.geteuid() == 0 and not SITUATIONS[name][0]:
         for path in (folder, *folder.rglob("*")):

@@ -1,3 +1,5 @@
+"""The estimator: the order of measurements, delays and timeouts."""
+
 from __future__ import annotations
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""The UTM projection of latitudes and longitudes."""
+
 from __future__ import annotations
 
 from math import cos, degrees, hypot, radians, sqrt

@@ -1,3 +1,5 @@
+"""The Kalman filters, compared with batch least squares."""
+
 from __future__ import annotations
 
 from math import inf, nan, pi, sqrt

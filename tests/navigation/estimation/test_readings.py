@@ -1,3 +1,5 @@
+"""Measurements from sensor messages: frames, axes and relative poses."""
+
 from __future__ import annotations
 
 from math import inf, nan, pi

@@ -1,3 +1,5 @@
+"""Cells on lines, and rays through an occupancy grid."""
+
 from __future__ import annotations
 
 from math import pi

@@ -220,8 +220,8 @@ async def test_clear_services_clear_costmap(robot, start):
     await call(robot, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
     assert node.costmap.cost_at(far_point) == FREE
     assert node.costmap.grid.cells[30, 0] == LETHAL
-    answer = await call(robot, "/global_costmap/get_costmap", "GetCostmap")
-    assert answer.map.metadata.size_x == 80
+    response = await call(robot, "/global_costmap/get_costmap", "GetCostmap")
+    assert response.map.metadata.size_x == 80
 
 
 async def test_footprint_parameter_replaces_radius(robot, start):

@@ -1,3 +1,5 @@
+"""`ekf_node`: odometry and IMU in, filtered odometry and transforms out."""
+
 from __future__ import annotations
 
 from math import cos, pi, sin

@@ -48,7 +48,7 @@ async def test_active_map_server_latches_map(graph: Graph, tmp_path: Path) -> No
     assert inactive_answer.map.info.width == 0
     node.trigger_activate()
     maps: list[Any] = []
-    graph.create_node("audience").create_subscription(_GRID, "/map", maps.append, LATCHED_QOS)
+    graph.create_node("test_node").create_subscription(_GRID, "/map", maps.append, LATCHED_QOS)
     await graph.settle()
     assert list(maps[0].data) == _CELLS.ravel().tolist()
     assert (maps[0].header.frame_id, maps[0].info.origin.position.x) == ("world", -1.0)
@@ -61,14 +61,14 @@ async def test_load_map_service_replaces_map(graph: Graph, log: list[LogRecord],
     parameters = {"yaml_filename": _files(tmp_path), "topic_name": "floor", "autostart_node": True}
     server = MapServer(graph, NodeOptions(parameters=parameters))
     maps: list[Any] = []
-    graph.create_node("audience").create_subscription(_GRID, "/floor", maps.append, LATCHED_QOS)
+    graph.create_node("test_node").create_subscription(_GRID, "/floor", maps.append, LATCHED_QOS)
     other_file = _files(tmp_path, "other", _CELLS.T)
 
     async def load(url: str) -> Any:
         return await _call(graph, "nav2_msgs/srv/LoadMap", "/map_server/load_map", map_url=url)
 
-    answer = await load(other_file)
-    assert (answer.result, answer.map.info.width) == (0, 2)
+    response = await load(other_file)
+    assert (response.result, response.map.info.width) == (0, 2)
     assert [grid.info.width for grid in maps] == [3, 2]
     invalid_file = tmp_path / "broken.yaml"
     invalid_file.write_text("image: other.pgm\n")
@@ -159,7 +159,7 @@ async def test_map_saver_fails_if_file_is_not_writable(graph: Graph, log: list[L
 async def test_save_map_service_saves_map(graph: Graph, tmp_path: Path) -> None:
     _publish(graph)
     server = MapSaverServer(graph, NodeOptions(parameters={"autostart_node": True}))
-    answer = await _call(
+    response = await _call(
         graph,
         "nav2_msgs/srv/SaveMap",
         "/map_saver/save_map",
@@ -169,7 +169,7 @@ async def test_save_map_service_saves_map(graph: Graph, tmp_path: Path) -> None:
         map_mode="trinary",
         free_thresh=float(np.float32(0.196)),
     )
-    assert answer.result
+    assert response.result
     assert "free_thresh: 0.196" in (tmp_path / "a.yaml").read_text()
     assert load_map(tmp_path / "a.yaml").cells.tolist() == _CELLS.tolist()
     server.close()

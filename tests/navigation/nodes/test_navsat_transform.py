@@ -1,3 +1,5 @@
+"""`navsat_transform_node`: GPS fixes to odometry and back."""
+
 from __future__ import annotations
 
 from math import pi
@@ -165,8 +167,8 @@ async def test_nothing_is_published_without_all_inputs(test):
         await fix(test)
         await test.advance(0.1)
     assert len(gps) == 0
-    answer = await test.call("/fromLL", get_service("robot_localization/srv/FromLL").Request())
-    assert answer.map_point.x == 0.0
+    response = await test.call("/fromLL", get_service("robot_localization/srv/FromLL").Request())
+    assert response.map_point.x == 0.0
     assert [record.text for record in test.log if record.level.name == "ERROR"] == ["No transform available (yet)"]
 
 

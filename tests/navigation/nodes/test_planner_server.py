@@ -60,8 +60,8 @@ class SentGoal:
         await self.wait_accepted()
         await self.scene.run(seconds)
         assert self.answer.done()
-        answer = self.answer.result()
-        return answer.status, answer.result
+        response = self.answer.result()
+        return response.status, response.result
 
 
 @pytest.fixture

@@ -231,11 +231,11 @@ def test_map_is_saved_and_returned_by_services(test, tmp_path):
     name = get_message("std_msgs/msg/String")(data=str(tmp_path / "flat"))
     response = call(test, "save_map", "slam_toolbox/srv/SaveMap", name=name)
     assert response.result == response.RESULT_SUCCESS
-    answer = call(test, "dynamic_map", "nav_msgs/srv/GetMap").map
+    dynamic_map = call(test, "dynamic_map", "nav_msgs/srv/GetMap").map
     test.advance(2.5)
-    assert answer.info.width == maps.last.info.width
+    assert dynamic_map.info.width == maps.last.info.width
     saved_map = load_map(tmp_path / "flat.yaml")
-    assert ((saved_map.cells == OCCUPIED) == (grid_from_message(answer).cells == OCCUPIED)).all()
+    assert ((saved_map.cells == OCCUPIED) == (grid_from_message(dynamic_map).cells == OCCUPIED)).all()
 
 
 def test_reset_service_starts_new_map(test):

@@ -26,7 +26,10 @@ def costmap(cells) -> Costmap:
 
 
 def costmap_of_text(*rows: str) -> Costmap:
-    """Return a costmap of characters: # lethal, o inscribed, ? unknown; the last row is at y = 0."""
+    """Return a costmap of characters: # lethal, o inscribed, ? unknown.
+
+    The last row is at y = 0.
+    """
     costs = {"#": LETHAL, "o": INSCRIBED, "?": UNKNOWN, ".": 0}
     return costmap([[costs[character] for character in row] for row in reversed(rows)])
 

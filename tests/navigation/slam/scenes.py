@@ -72,7 +72,10 @@ def along(corners, step=0.1, turn=0.1):
 
 
 def drifting(poses, scale=1.02, yaw_per_meter=0.03, noise=0.0, rng=None):
-    """Return the poses of drifting odometry: distances are scaled, turns have errors; noise is relative to the step."""
+    """Return the poses of drifting odometry: distances are scaled, turns have errors.
+
+    Noise is relative to the step.
+    """
     result = [poses[0]]
     for old, new in pairwise(poses):
         step = relative_pose(old, new)

@@ -49,7 +49,10 @@ def test_chain_without_loop_is_unchanged():
 
 
 def test_loop_error_is_distributed_by_information():
-    """Three steps of 1 m have the information 1, 2 and 4, and a measured sum of 3.7 m. Each changes by its variance."""
+    """Three steps of 1 m have the information 1, 2 and 4, and a measured sum of 3.7 m.
+
+    Each changes by its variance.
+    """
     graph = PoseGraph()
     graph.add_node(np.zeros(3))
     for number, information in enumerate((1.0, 2.0, 4.0)):

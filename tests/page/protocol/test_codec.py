@@ -1,3 +1,5 @@
+"""The codec of page messages: round trips and rejected input."""
+
 from __future__ import annotations
 
 import json

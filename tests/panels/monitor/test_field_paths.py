@@ -1,3 +1,5 @@
+"""Paths to numeric fields of messages."""
+
 from __future__ import annotations
 
 import pytest

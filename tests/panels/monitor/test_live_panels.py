@@ -1,3 +1,5 @@
+"""The live panels: topics, messages, plots, parameters and the log."""
+
 from __future__ import annotations
 
 import asyncio
@@ -320,9 +322,9 @@ async def test_invalid_node_name_has_no_parameters():
     async with opened() as (world, client):
         tuned(world)
         await client.send("watch_parameters", wants_list=True, node="no name")
-        answer = await client.until("node_parameters", node="no name")
-        assert answer["parameters"] == []
-        assert "is not a valid service name" in answer["error"]
+        response = await client.until("node_parameters", node="no name")
+        assert response["parameters"] == []
+        assert "is not a valid service name" in response["error"]
         await client.socket.send_json(
             {"type": "set_parameter", "node": "no name", "name": "a", "kind": "bool", "values": ["true"]}
         )

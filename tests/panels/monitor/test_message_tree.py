@@ -1,3 +1,5 @@
+"""The tree of a message's fields, and its limits."""
+
 from __future__ import annotations
 
 from linkwright.messages import get_message

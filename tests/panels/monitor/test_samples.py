@@ -1,3 +1,5 @@
+"""Samples of plots: queues, thinning and frames."""
+
 from __future__ import annotations
 
 import math

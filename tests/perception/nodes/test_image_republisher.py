@@ -1,3 +1,5 @@
+"""The image republisher: raw, compressed and depth transports."""
+
 from __future__ import annotations
 
 import numpy as np

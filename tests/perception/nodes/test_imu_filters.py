@@ -1,3 +1,5 @@
+"""The IMU filter nodes: orientation, transforms and parameters."""
+
 from __future__ import annotations
 
 from math import pi

@@ -1,3 +1,5 @@
+"""The laser filter node: chains of filters, and their parameters."""
+
 from __future__ import annotations
 
 from math import nan, pi

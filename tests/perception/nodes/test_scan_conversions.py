@@ -1,3 +1,5 @@
+"""Nodes that convert depth images and clouds to scans."""
+
 from __future__ import annotations
 
 from math import hypot, inf, pi

@@ -1,3 +1,5 @@
+"""Scans from depth images and point clouds."""
+
 from __future__ import annotations
 
 from math import atan, hypot, inf, nan, pi

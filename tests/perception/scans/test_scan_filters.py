@@ -1,3 +1,5 @@
+"""The filters of laser scans."""
+
 from __future__ import annotations
 
 from math import inf, nan, pi

@@ -1,3 +1,5 @@
+"""Classes and keys of RViz 1, read and written."""
+
 from __future__ import annotations
 
 import pytest

@@ -1,3 +1,5 @@
+"""The property store: values, defaults, identifiers and changes."""
+
 from __future__ import annotations
 
 import pytest

@@ -1,3 +1,5 @@
+"""Configurations: defaults, sizes that fit a model, and files."""
+
 from __future__ import annotations
 
 import difflib

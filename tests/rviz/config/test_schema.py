@@ -1,3 +1,5 @@
+"""The types of properties: valid values, and their spellings in files."""
+
 from __future__ import annotations
 
 import math

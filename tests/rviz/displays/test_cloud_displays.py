@@ -192,8 +192,8 @@ async def test_page_receives_fields_of_selected_point():
         identity = world.display("PointCloud2").id
         await client.send("request_point", display=identity, key="", index=7)
         await client.send("request_point", display=identity, key="", index=1)
-        answer = await client.until("point_fields")
-        assert (answer["index"], answer["fields"]) == (1, {"intensity": 1.0, "rgb": "#10203000"})
+        response = await client.until("point_fields")
+        assert (response["index"], response["fields"]) == (1, {"intensity": 1.0, "rgb": "#10203000"})
 
 
 async def test_laser_scan_is_shown():

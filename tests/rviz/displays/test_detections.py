@@ -224,8 +224,8 @@ async def test_threshold_filters_in_page_without_detector_parameter(parameters, 
     async with open_world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as world:
         detecting(world, **parameters)
         world.display("Detections").set_property(("Threshold",), 0.7)
-        answer, text = await threshold_status(world)
-        assert (answer, words in text) == (level, True)
+        response, text = await threshold_status(world)
+        assert (response, words in text) == (level, True)
 
 
 async def test_rejected_threshold_and_missing_node_are_reported():

@@ -1,3 +1,5 @@
+"""Displays: classes, statuses, the grid and TF."""
+
 from __future__ import annotations
 
 import subprocess

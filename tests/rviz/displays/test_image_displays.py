@@ -234,8 +234,8 @@ async def test_camera_display_waits_for_camera_info():
         node = world.graph.create_node("camera")
         images = node.create_publisher(Image, "/camera/image", 5)
         infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
-        world.move({("base", "eye"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
-        images.publish(small_image(1, 2, frame="eye"))
+        world.move({("base", "camera"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        images.publish(small_image(1, 2, frame="camera"))
         await world.settle()
         text = "No CameraInfo received on [/camera/camera_info]. Topic may not exist."
         assert world.status("Camera")["Camera Info"] == ("warn", text)

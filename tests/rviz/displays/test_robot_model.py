@@ -1,3 +1,5 @@
+"""The RobotModel display: descriptions, links, joints and statuses."""
+
 from __future__ import annotations
 
 from pathlib import Path

@@ -16,7 +16,10 @@ _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
 
 
 def _is_plain(text: ast.expr) -> bool:
-    """Return whether an expression is a text that is not a phrase. Phrases are checked with the catalogs."""
+    """Return whether an expression is a text that is not a phrase.
+
+    Phrases are checked with the catalogs.
+    """
     if isinstance(text, ast.IfExp):
         return _is_plain(text.body) or _is_plain(text.orelse)
     if isinstance(text, ast.BoolOp):

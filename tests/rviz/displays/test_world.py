@@ -353,7 +353,7 @@ SEEING = """
         <vertical><samples>32</samples><min_angle>-0.31</min_angle><max_angle>0.31</max_angle></vertical></scan>
         <range><min>0.2</min><max>20</max></range></lidar></sensor>
     <sensor name="spare" type="ray"><ray><scan><horizontal><samples>3</samples></horizontal></scan></ray></sensor>
-    <sensor name="eye" type="camera"><camera><horizontal_fov>1.5707963267948966</horizontal_fov>
+    <sensor name="camera" type="camera"><camera><horizontal_fov>1.5707963267948966</horizontal_fov>
       <image><width>200</width><height>100</height></image><clip><near>0.5</near><far>8</far></clip></camera></sensor>
   </link></model>
 </world>"""
@@ -405,6 +405,6 @@ async def test_cameras_are_sent_with_field_of_view():
     async with open_world(config("world")) as world:
         await Simulation(world).describe(WORLD.replace("</world>", SEEING), links=4)
         (camera,) = sent(world, "world_scene").fields["cameras"]
-        assert (camera["name"], camera["visualized"]) == ("scout::head::eye", False)
+        assert (camera["name"], camera["visualized"]) == ("scout::head::camera", False)
         assert [camera[side] for side in ("left", "right", "up", "down")] == pytest.approx([1, 1, 0.5, 0.5])
         assert (camera["near"], camera["far"]) == (0.5, 8.0)

@@ -1,3 +1,5 @@
+"""The stream of transforms to pages: rates, pauses and fixed frames."""
+
 from __future__ import annotations
 
 import asyncio

@@ -1,3 +1,5 @@
+"""The history of edits: undo, redo and merged edits."""
+
 from __future__ import annotations
 
 from linkwright.page.protocol.configuration import EditName

@@ -38,7 +38,10 @@ def renderer_of(simulation: Simulation, method: str):
 
 @pytest.fixture(params=METHODS)
 def make_new(request: pytest.FixtureRequest):
-    """Return a function that creates a renderer of one method; methods that fail here are skipped."""
+    """Return a function that creates a renderer of one method.
+
+    Methods that fail here are skipped.
+    """
     renderers = []
 
     def renderer(simulation: Simulation):
@@ -275,8 +278,8 @@ def test_spawned_and_moved_models_are_rendered(make_new):
 
 def test_camera_does_not_see_its_own_housing(make_new):
     housing = "<geometry><box><size>0.06 0.06 0.06</size></box></geometry>"
-    eye = f'<model name="eye"><link name="link"><visual name="v">{housing}</visual></link></model>'
-    simulation = make_simulation(block("wall", "3 0 0 0 0 0", "1 20 20"), eye)
+    camera_housing = f'<model name="camera"><link name="link"><visual name="v">{housing}</visual></link></model>'
+    simulation = make_simulation(block("wall", "3 0 0 0 0 0", "1 20 20"), camera_housing)
     depth = make_new(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert np.abs(depth - 2.5).max() < 1e-3
 

@@ -77,7 +77,7 @@ class Arm:
     """The arm with an active controller."""
 
     def __init__(self, server: Any, graph: Any) -> None:
-        self.server, self.graph, self.node = server, graph, graph.create_node("audience")
+        self.server, self.graph, self.node = server, graph, graph.create_node("test_node")
 
     async def start_controller(self, interface: str, wait: float = 0.02) -> None:
         """Start the controller; ``wait`` is the simulated time after each call, in s."""

@@ -203,6 +203,9 @@ async def test_robot_stops_when_commands_stop(robot, tmp_path):
 
 
 async def test_wheels_of_robot_require_one_model_compilation(tmp_path):
-    """Motors require a new compilation of MuJoCo's model. With one per wheel, many robots would start slowly."""
+    """Motors require a new compilation of MuJoCo's model.
+
+    With one per wheel, many robots would start slowly.
+    """
     async with start_drive(DIFFERENTIAL, tmp_path) as drive:
         assert drive.server.simulation.revision <= 1

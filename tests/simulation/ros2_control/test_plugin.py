@@ -1,3 +1,5 @@
+"""The ros2_control plugin of Gazebo: controlled joints and sensors in a simulation."""
+
 from __future__ import annotations
 
 from math import isnan
@@ -54,7 +56,7 @@ class ControlledRobot:
 
     def __init__(self, server, graph) -> None:
         self.server, self.graph = server, graph
-        self.node = graph.create_node("audience")
+        self.node = graph.create_node("test_node")
 
     async def describe(self, text: str, topic: str = "/robot_description") -> None:
         self.node.create_publisher(String, topic, DESCRIPTION_QOS).publish(String(data=text))
@@ -231,7 +233,7 @@ async def test_manager_is_removed_with_robot(file):
         await world.start("broadcaster", "wheels")
         server.delete("mbot")
         await world.advance(0.1)
-        assert graph.node_names() == ["/audience", "/gazebo"]
+        assert graph.node_names() == ["/test_node", "/gazebo"]
 
 
 async def test_controllers_stay_active_when_model_is_replaced(file):

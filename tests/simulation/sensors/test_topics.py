@@ -32,7 +32,7 @@ def robot_with(*elements: str, link: str = "head", extra: str = "") -> str:
     return f'<model name="robot"><static>true</static><link name="{link}">{"".join(elements)}</link>{extra}</model>'
 
 
-def sensor(kind: str, text: str, name: str = "eye", rate: float = 10) -> str:
+def sensor(kind: str, text: str, name: str = "sensor", rate: float = 10) -> str:
     return f'<sensor name="{name}" type="{kind}"><update_rate>{rate}</update_rate>{text}</sensor>'
 
 
@@ -101,7 +101,7 @@ async def test_displayed_rays_and_scan_share_one_measurement(visualize: str, top
         assert not measurements
         rays, scan = await last_messages(server, graph, topic, "/scan")
         assert len(measurements) == 1
-        assert rays.header.frame_id == "robot::head::eye"
+        assert rays.header.frame_id == "robot::head::sensor"
         assert list(rays.ranges) == [inf, 2.0, inf] * 2
         assert list(scan.ranges) == [inf, 2.0, inf]
 
@@ -220,7 +220,7 @@ async def test_gz_lidar_publishes_points_beside_scan():
     text = robot_with(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
     async with running_server(WALL, text) as (server, graph, log):
         scan, cloud = await last_messages(server, graph, "/lidar", "/lidar/points")
-        assert scan.header.frame_id == "robot/head/eye"
+        assert scan.header.frame_id == "robot/head/sensor"
         assert list(scan.ranges) == [inf, 2.0, inf]
         assert (cloud.width, cloud.height, cloud.is_dense) == (3, 1, False)
         assert [(field.name, field.offset) for field in cloud.fields][3:] == [("intensity", 16), ("ring", 24)]
@@ -230,7 +230,7 @@ async def test_gz_lidar_publishes_points_beside_scan():
 
 async def test_gz_sensor_without_topic_has_default_gz_name():
     async with running_server(WALL, robot_with(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
-        (scan,) = await last_messages(server, graph, "/world/test/model/robot/link/head/sensor/eye/scan")
+        (scan,) = await last_messages(server, graph, "/world/test/model/robot/link/head/sensor/sensor/scan")
         assert scan.ranges[1] == 2.0
 
 
@@ -255,7 +255,7 @@ async def test_imu_plugins_publish_gravity_and_noise(library: str | None, text: 
         assert message.angular_velocity_covariance[8] == pytest.approx(0.01)
         assert message.angular_velocity.z != 0
         assert not message.orientation_covariance.any()
-        assert message.header.frame_id == ("link" if topic == "/driver/out" else "one/link/eye")
+        assert message.header.frame_id == ("link" if topic == "/driver/out" else "one/link/sensor")
         assert not log
 
 
@@ -305,7 +305,7 @@ async def test_gz_altimeter_and_air_pressure_are_published():
     async with running_server(text) as (server, graph, log):
         height, air = await last_messages(server, graph, "/height", "/air", duration=SECOND)
         assert (height.vertical_position, height.vertical_velocity) == pytest.approx((-4.905, -9.81), abs=0.01)
-        assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/eye")
+        assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/sensor")
         assert air.fluid_pressure == pytest.approx(99606.0, abs=20.0)
         assert air.variance == 4.0
         assert not log
@@ -408,7 +408,7 @@ async def test_image_format_sets_encoding(image_format: str, encoding: str, step
         graph,
         _,
     ):
-        (image,) = await last_messages(server, graph, "/eye/image_raw")
+        (image,) = await last_messages(server, graph, "/sensor/image_raw")
         assert (image.encoding, image.step, len(image.data)) == (encoding, step, 48 * step)
 
 
@@ -433,11 +433,11 @@ async def test_depth_camera_measures_along_optical_axis(library: str):
 async def test_triggered_camera_waits_for_trigger():
     element = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
     async with running_server(WALL, robot_with(sensor("camera", CAMERA + element))) as (server, graph, _):
-        recording = Recording(graph, server.node, "/eye/image_raw")
+        recording = Recording(graph, server.node, "/sensor/image_raw")
         server.advance(SECOND)
         await graph.settle()
         assert len(recording) == 0
-        trigger = server.node.create_publisher("std_msgs/msg/Empty", "/eye/image_trigger", 1)
+        trigger = server.node.create_publisher("std_msgs/msg/Empty", "/sensor/image_trigger", 1)
         trigger.publish(get_message("std_msgs/msg/Empty")())
         await graph.settle()
         server.advance(SECOND)
@@ -446,16 +446,16 @@ async def test_triggered_camera_waits_for_trigger():
 
 
 async def test_multicamera_has_topic_per_camera():
-    eyes = CAMERA.replace("<camera>", '<camera name="left">') + CAMERA.replace("<camera>", '<camera name="right">')
+    cameras = CAMERA.replace("<camera>", '<camera name="left">') + CAMERA.replace("<camera>", '<camera name="right">')
     element = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
-    async with running_server(WALL, robot_with(sensor("multicamera", eyes + element))) as (server, graph, _):
+    async with running_server(WALL, robot_with(sensor("multicamera", cameras + element))) as (server, graph, _):
         left, right = await last_messages(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
         assert (left.width, right.width) == (64, 64)
 
 
 async def test_gz_camera_publishes_camera_info_beside_image():
-    eye = CAMERA.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
-    async with running_server(WALL, robot_with(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (
+    camera = CAMERA.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
+    async with running_server(WALL, robot_with(sensor("camera", f"<topic>front/image</topic>{camera}"))) as (
         server,
         graph,
         _,
@@ -517,7 +517,7 @@ async def test_image_noise_is_reproducible_for_same_seed():
     images = []
     for _ in range(2):
         async with running_server(WALL, text) as (server, graph, _log):
-            (image,) = await last_messages(server, graph, "/eye/image_raw")
+            (image,) = await last_messages(server, graph, "/sensor/image_raw")
             images.append(pixels_of(image).astype(float))
     assert (images[0] == images[1]).all()
     assert np.std(images[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
@@ -546,5 +546,5 @@ async def test_logical_camera_lists_models_in_view():
         assert image_model.name == "ahead"
         assert (image_model.pose.position.x, image_model.pose.position.y) == pytest.approx((2.0, -0.5))
         assert image.pose.position.z == pytest.approx(1.0)
-        assert image.header.frame_id == "robot/head/eye"
+        assert image.header.frame_id == "robot/head/sensor"
         assert not log

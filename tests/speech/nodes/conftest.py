@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import pytest
 
-from tests.nodes.conftest import clock, graph, log, logged, stage  # noqa: F401  # fixtures
+from tests.nodes.conftest import clock, graph, harness, log, logged  # noqa: F401  # fixtures
 from tests.speech.nodes.fakes import ENTRY, CommanderHarness, ScriptedEngine
 
 
 @pytest.fixture
-async def talk(stage):  # noqa: F811
+async def talk(harness):  # noqa: F811
     """Return a function that starts a voice_commander, which ends with the test."""
     harnesses = []
 
     def start(**parameters):
-        harnesses.append(CommanderHarness(stage, **parameters))
+        harnesses.append(CommanderHarness(harness, **parameters))
         return harnesses[-1]
 
     yield start
     for robot in harnesses:
         robot.commander.close()
-    await stage.graph.settle()
+    await harness.graph.settle()
 
 
 @pytest.fixture

@@ -35,12 +35,12 @@ async def test_answered_press_does_not_report_unknown_speech(engine, talk, heard
     robot = talk(engine="told")
     await robot.hold(True)
     await robot.process(*((heard, final("")) if is_first else (final(""), heard)))
-    answers = list(robot.texts_by_topic["response"])
-    assert len(answers) == 1
+    responses = list(robot.texts_by_topic["response"])
+    assert len(responses) == 1
     await robot.hold(False)
     await eventually(lambda: engine.finished)
     await robot.finish_results()
-    assert robot.texts_by_topic["response"] == answers
+    assert robot.texts_by_topic["response"] == responses
 
 
 async def test_press_with_gap_asks_to_repeat(engine, talk):
@@ -121,10 +121,12 @@ def test_proposal_lasts_until_next_press_or_command():
     [({}, [True, False]), ({"words_file": "/words.json"}, []), ({"open_listening": True}, [])],
     ids=["usual file", "a file that pages do not write", "listens to all"],
 )
-async def test_enrolling_proposal_is_published_and_withdrawn(engine, talk, stage, monkeypatch, parameters, proposed):
+async def test_enrolling_proposal_is_published_and_withdrawn(engine, talk, harness, monkeypatch, parameters, proposed):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"enrolled": ENTRY})
     messages = []
-    stage.node.create_subscription(BOOL, "/voice/propose_enrolling", lambda message: messages.append(message.data), 10)
+    harness.node.create_subscription(
+        BOOL, "/voice/propose_enrolling", lambda message: messages.append(message.data), 10
+    )
     robot = talk(engine="enrolled", **parameters)
     engine.results_at_end.append(final(""))
     for _ in range(3):

@@ -30,27 +30,27 @@ def words_file(tmp_path_factory):
 
 
 @pytest.fixture
-async def robot(stage, words_file):
-    talk = CommanderHarness(stage, engine="enrolled", words_file=str(words_file), open_listening=True)
+async def robot(harness, words_file):
+    talk = CommanderHarness(harness, engine="enrolled", words_file=str(words_file), open_listening=True)
     yield talk
     talk.commander.close()
-    await stage.graph.settle()
+    await harness.graph.settle()
 
 
 async def play(robot, samples):
     """Publish sound in blocks of 100 ms, as a microphone does."""
     for at in range(0, len(samples), BLOCK):
         robot.sound.publish(
-            audio_stamped(samples[at : at + BLOCK].tobytes(), robot.stage.node.get_clock().now().to_msg())
+            audio_stamped(samples[at : at + BLOCK].tobytes(), robot.harness.node.get_clock().now().to_msg())
         )
-        await robot.stage.graph.settle()
+        await robot.harness.graph.settle()
 
 
 async def wait_for_commands(robot, *commands):
     """Wait until exactly these commands were executed; the engine works in its own thread."""
     await eventually(lambda: len(robot.texts_by_topic["command"]) >= len(commands), what=lambda: robot.texts_by_topic)
     assert robot.texts_by_topic["command"] == list(commands)
-    await robot.stage.graph.settle()
+    await robot.harness.graph.settle()
 
 
 def spoken_word(name):

@@ -37,17 +37,17 @@ def commands(tmp_path, text):
         ("turn right", (0.0, 0.0, -0.6)),
     ],
 )
-async def test_command_drives_robot(stage, talk, text, speed):
+async def test_command_drives_robot(harness, talk, text, speed):
     robot = talk()
     assert await robot.send_text(text) == text
     assert robot.speed == speed
-    await stage.clock.advance(1.0)
+    await harness.clock.advance(1.0)
     assert robot.speed == speed
     assert len(robot.velocities) > 10, "commands are published repeatedly"
     assert robot.texts_by_topic["text"] == [text]
 
 
-async def test_new_command_replaces_previous_and_stop_ends_it(stage, talk):
+async def test_new_command_replaces_previous_and_stop_ends_it(harness, talk):
     robot = talk()
     await robot.send_text("forward")
     await robot.send_text("left")
@@ -55,17 +55,17 @@ async def test_new_command_replaces_previous_and_stop_ends_it(stage, talk):
     await robot.send_text("停")
     assert robot.speed == (0.0, 0.0, 0.0)
     robot.velocities.clear()
-    await stage.clock.advance(2.0)
+    await harness.clock.advance(2.0)
     assert robot.velocities == []
     assert robot.texts_by_topic["command"] == ["forward", "left", "stop"]
 
 
-async def test_silence_timeout_stops_robot(stage, talk):
+async def test_silence_timeout_stops_robot(harness, talk):
     robot = talk(silence_timeout=3.0)
     await robot.send_text("forward")
-    await stage.clock.advance(2.9)
+    await harness.clock.advance(2.9)
     assert robot.speed == (0.2, 0.0, 0.0)
-    await stage.clock.advance(0.2)
+    await harness.clock.advance(0.2)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert robot.texts_by_topic["response"][-1] == "I hear nothing, so I am stopping"
 
@@ -86,10 +86,10 @@ def travelled_distance(robot):
         ("转两圈", 0.0, 4 * pi),
     ],
 )
-async def test_distance_without_odometry_is_speed_times_time(stage, talk, text, distance, angle):
+async def test_distance_without_odometry_is_speed_times_time(harness, talk, text, distance, angle):
     robot = talk()
     await robot.send_text(text)
-    await stage.clock.advance(40.0)
+    await harness.clock.advance(40.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert travelled_distance(robot) == pytest.approx((distance, angle), abs=0.02)
 
@@ -97,10 +97,10 @@ async def test_distance_without_odometry_is_speed_times_time(stage, talk, text, 
 class SlippingRobot:
     """A robot with slipping wheels: it moves a part of the commanded distance."""
 
-    def __init__(self, stage, robot, share=0.5):
-        self.publisher = stage.node.create_publisher(ODOMETRY, "/odom", 10)
+    def __init__(self, harness, robot, share=0.5):
+        self.publisher = harness.node.create_publisher(ODOMETRY, "/odom", 10)
         self.robot, self.share, self.x = robot, share, 0.0
-        stage.node.create_timer(0.02, self.move)
+        harness.node.create_timer(0.02, self.move)
 
     def move(self):
         self.x += (self.robot.speed[0] if self.robot.velocities else 0.0) * 0.02 * self.share
@@ -110,22 +110,22 @@ class SlippingRobot:
         self.publisher.publish(message)
 
 
-async def test_distance_is_measured_by_odometry(stage, talk):
+async def test_distance_is_measured_by_odometry(harness, talk):
     robot = talk()
-    body = SlippingRobot(stage, robot)
-    await stage.clock.advance(0.1)
+    body = SlippingRobot(harness, robot)
+    await harness.clock.advance(0.1)
     await robot.send_text("前进一点五米")
-    await stage.clock.advance(30.0)
+    await harness.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert body.x == pytest.approx(1.5, abs=0.02)
 
 
-async def test_stuck_robot_stops_and_reports(stage, talk):
+async def test_stuck_robot_stops_and_reports(harness, talk):
     robot = talk()
-    SlippingRobot(stage, robot, share=0.0)
-    await stage.clock.advance(0.1)
+    SlippingRobot(harness, robot, share=0.0)
+    await harness.clock.advance(0.1)
     await robot.send_text("forward one meter")
-    await stage.clock.advance(30.0)
+    await harness.clock.advance(30.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert robot.texts_by_topic["response"][-1] == "I am stuck, so I am stopping"
 
@@ -147,11 +147,11 @@ async def test_speed_commands_change_speed(talk):
     assert robot.speed[0] == pytest.approx(0.8), "the speed is limited to four times the default"
 
 
-async def test_closing_node_stops_robot(stage, talk):
+async def test_closing_node_stops_robot(harness, talk):
     robot = talk()
     await robot.send_text("forward")
     robot.commander.close()
-    await stage.graph.settle()
+    await harness.graph.settle()
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
@@ -304,11 +304,11 @@ async def test_uncertain_stop_stops_moving_robot(engine, talk):
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_lost_audio_source_stops_robot(engine, stage, talk):
+async def test_lost_audio_source_stops_robot(engine, harness, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.process(final("forward"))
     robot.microphone_node.destroy_node()
-    await stage.clock.advance(1.0)
+    await harness.clock.advance(1.0)
     assert robot.speed == (0.0, 0.0, 0.0)
     assert robot.texts_by_topic["response"][-1] == "the audio source is gone, so I am stopping"
 
@@ -323,9 +323,9 @@ async def test_unknown_engine_ends_node(engine, talk, logged):
 async def test_failing_engine_stops_robot_and_ends_node(engine, talk, logged):
     robot = talk(engine="told", open_listening=True)
     await robot.process(final("forward"))
-    robot.sound.publish(audio_stamped(b"\xff\x7f", robot.stage.node.get_clock().now().to_msg()))
+    robot.sound.publish(audio_stamped(b"\xff\x7f", robot.harness.node.get_clock().now().to_msg()))
     await eventually(robot.commander.finished.done)
-    await robot.stage.graph.settle()
+    await robot.harness.graph.settle()
     assert robot.speed == (0.0, 0.0, 0.0)
     assert logged("FATAL") == ["the speech engine failed: KeyError: 32767"]
 
@@ -343,15 +343,15 @@ commands:
 
 
 @pytest.mark.parametrize(("answer", "count"), [("yes", 1), ("no", 0), ("forward", 0), (None, 0)])
-async def test_confirmation_is_required_before_command(stage, talk, tmp_path, answer, count):
+async def test_confirmation_is_required_before_command(harness, talk, tmp_path, answer, count):
     robot = talk(commands_file=commands(tmp_path, QUESTION))
     reset = []
-    stage.node.create_subscription(STRING, "/reset", reset.append, 10)
+    harness.node.create_subscription(STRING, "/reset", reset.append, 10)
     assert await robot.send_text("reset") == "are you sure?"
     if answer:
         await robot.send_text(answer)
     else:
-        await stage.clock.advance(11.0)
+        await harness.clock.advance(11.0)
         assert robot.texts_by_topic["response"][-1] == "I received no answer, so I will not do it"
     assert len(reset) == count
     await robot.send_text("yes")
@@ -389,12 +389,12 @@ commands:
 class Navigator:
     """A server of NavigateToPose whose goals run until the test ends them."""
 
-    def __init__(self, stage):
+    def __init__(self, harness):
         self.goals, self.cancel_count = [], 0
         kind = get_action("nav2_msgs/action/NavigateToPose")
         self.result = kind.Result
         self.server = ActionServer(
-            stage.node,
+            harness.node,
             kind,
             "navigate_to_pose",
             lambda goal: None,
@@ -411,10 +411,10 @@ class Navigator:
         return CancelResponse.ACCEPT
 
 
-async def test_go_to_place_sends_goal_and_reports_arrival(stage, talk, tmp_path):
-    navigator = Navigator(stage)
+async def test_go_to_place_sends_goal_and_reports_arrival(harness, talk, tmp_path):
+    navigator = Navigator(harness)
     robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
-    await stage.graph.settle()
+    await harness.graph.settle()
     assert await robot.send_text("去厨房") == "去厨房"
     (goal,) = navigator.goals
     pose = goal.request.pose
@@ -422,15 +422,15 @@ async def test_go_to_place_sends_goal_and_reports_arrival(stage, talk, tmp_path)
     assert pose.pose.orientation.z == pytest.approx(1.0)
     assert robot.texts_by_topic["command"] == ["go place=kitchen"]
     goal.succeed(navigator.result())
-    await stage.graph.settle()
+    await harness.graph.settle()
     assert robot.texts_by_topic["response"][-1] == "完成了"
 
 
 @pytest.mark.parametrize("text", ["stop", "forward"])
-async def test_stop_or_other_command_cancels_goal(stage, talk, tmp_path, text):
-    navigator = Navigator(stage)
+async def test_stop_or_other_command_cancels_goal(harness, talk, tmp_path, text):
+    navigator = Navigator(harness)
     robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
-    await stage.graph.settle()
+    await harness.graph.settle()
     await robot.send_text("go to the kitchen")
     await robot.send_text(text)
     assert navigator.cancel_count >= 1
@@ -441,41 +441,41 @@ async def test_missing_action_server_is_reported(talk, tmp_path):
     assert await robot.send_text("go to the kitchen") == "I cannot do it: no node serves 'navigate_to_pose'"
 
 
-async def test_service_response_is_spoken(stage, talk):
+async def test_service_response_is_spoken(harness, talk):
     service_type = get_service("std_srvs/srv/Trigger")
-    stage.node.create_service(
+    harness.node.create_service(
         service_type,
         "/vision/describe/en",
         lambda request, response: service_type.Response(success=True, message="a red ball"),
     )
     robot = talk()
-    await stage.graph.settle()
+    await harness.graph.settle()
     await robot.send_text("what do you see")
     await eventually(lambda: robot.texts_by_topic["response"][-1] == "a red ball")
 
 
-def clients(stage):
-    return [endpoint.name for endpoint in stage.graph.endpoints() if endpoint.kind is EndpointKind.CLIENT]
+def clients(harness):
+    return [endpoint.name for endpoint in harness.graph.endpoints() if endpoint.kind is EndpointKind.CLIENT]
 
 
-async def test_missing_service_does_not_delay_other_commands(stage, talk):
+async def test_missing_service_does_not_delay_other_commands(harness, talk):
     robot = talk()
-    await stage.graph.settle()
-    assert [client for client in clients(stage) if "/_action/" not in client] == []
+    await harness.graph.settle()
+    assert [client for client in clients(harness) if "/_action/" not in client] == []
     assert await robot.send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
     service_type = get_service("std_srvs/srv/Trigger")
-    stage.node.create_service(
+    harness.node.create_service(
         service_type,
         "/vision/describe/en",
         lambda request, response: service_type.Response(success=True, message="a red ball"),
     )
     await robot.send_text("what do you see")
     await eventually(lambda: robot.texts_by_topic["response"][-1] == "a red ball")
-    assert "/vision/describe/en" not in clients(stage)
+    assert "/vision/describe/en" not in clients(harness)
 
 
-async def test_service_of_other_type_is_not_called(stage, talk):
-    stage.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
+async def test_service_of_other_type_is_not_called(harness, talk):
+    harness.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
     assert await talk().send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
 
 
@@ -522,11 +522,13 @@ async def test_launch_file_is_started_without_shell_and_ended_by_stop(talk, tmp_
     assert len(process.signals) == 1
 
 
-async def test_go_to_object_publishes_target_and_stop(stage, talk):
+async def test_go_to_object_publishes_target_and_stop(harness, talk):
     targets = []
-    stage.node.create_subscription(STRING, "/vision/go_to/en", lambda message: targets.append(message.data), 10)
-    stage.node.create_subscription(STRING, "/vision/go_to/zh", lambda message: targets.append(("zh", message.data)), 10)
-    stage.node.create_subscription("std_msgs/msg/Empty", "/vision/stop", lambda message: targets.append("stop"), 10)
+    harness.node.create_subscription(STRING, "/vision/go_to/en", lambda message: targets.append(message.data), 10)
+    harness.node.create_subscription(
+        STRING, "/vision/go_to/zh", lambda message: targets.append(("zh", message.data)), 10
+    )
+    harness.node.create_subscription("std_msgs/msg/Empty", "/vision/stop", lambda message: targets.append("stop"), 10)
     robot = talk()
     await robot.send_text("forward")
     await robot.send_text("go to the red ball")

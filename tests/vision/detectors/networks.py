@@ -24,7 +24,10 @@ def columns(
     transposed=False,
     objectness=False,
 ) -> Path:
-    """Center, size and scores of each place; in rows with `transposed`, with `objectness` as of classic YOLOv5."""
+    """Center, size and scores of each place.
+
+    In rows with `transposed`, with `objectness` as of classic YOLOv5.
+    """
     numbers = 4 + objectness + classes + masks + more
     random = np.random.default_rng(classes)
     anchors = 3 if objectness else 1

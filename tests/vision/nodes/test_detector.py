@@ -417,13 +417,13 @@ async def test_classes_set_during_loading_apply_after_loading(test, start, slow)
     await eventually(slow.begun.is_set)
     choose = get_service("yolo_msgs/srv/SetClasses")
     client = test.node.create_client(choose, "/yolo/set_classes")
-    answers = [client.call_async(choose.Request(classes=[name])) for name in ("rd", "red")]
+    responses = [client.call_async(choose.Request(classes=[name])) for name in ("rd", "red")]
     await test.settle()
-    assert not any(answer.done() for answer in answers)
+    assert not any(response.done() for response in responses)
     slow.proceed.set()
-    await eventually(lambda: all(answer.done() for answer in answers))
-    assert [answer.result().success for answer in answers] == [False, True]
-    assert "did you mean 'red'?" in answers[0].result().message
+    await eventually(lambda: all(response.done() for response in responses))
+    assert [response.result().success for response in responses] == [False, True]
+    assert "did you mean 'red'?" in responses[0].result().message
     assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["red"]
 
 

@@ -26,10 +26,12 @@ def test_seeker_goes_to_ball(tmp_path, ball):
         place = test.robot_pose()
         test.advance(2.0)
         assert test.robot_pose()[:2] == pytest.approx(place[:2], abs=0.02), "the robot stands still"
-        answers = {name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")}
-        assert answers[""] == answers["/en"]
-        assert answers["/en"].startswith("I see a ball 0.")
-        assert "球" in answers["/zh"]
+        responses = {
+            name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")
+        }
+        assert responses[""] == responses["/en"]
+        assert responses["/en"].startswith("I see a ball 0.")
+        assert "球" in responses["/zh"]
 
 
 @pytest.mark.slow
@@ -59,8 +61,8 @@ def test_answers_are_in_language_of_request(tmp_path, language):
         test.tell_to_stop()
         test.settle()
         usual = "我在找球。" if language == "zh" else "I am looking for the ball."
-        answers = ["我在找球。", "I am looking for the ball."]
-        assert test.spoken() == [*answers, *answers, usual, "我在找球。", "我停下了。"]
+        responses = ["我在找球。", "I am looking for the ball."]
+        assert test.spoken() == [*responses, *responses, usual, "我在找球。", "我停下了。"]
 
 
 def test_seeker_follows_moving_ball_until_stopped(tmp_path):

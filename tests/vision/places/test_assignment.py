@@ -11,7 +11,10 @@ from linkwright.vision.places.assignment import assign
 
 
 def lowest_cost(costs, most):
-    """Return the cost of the best assignment by exhaustive search; an unassigned element costs `most`."""
+    """Return the cost of the best assignment by exhaustive search.
+
+    An unassigned element costs `most`.
+    """
     rows, columns = costs.shape
     padded = np.full((rows, columns + rows), most)
     padded[:, :columns] = np.where(costs <= most, costs, np.inf)

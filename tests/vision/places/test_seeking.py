@@ -13,7 +13,10 @@ PERIOD = 0.1
 
 
 class Robot:
-    """A robot that follows its commands in a plane with one object; its field of view is 40 degrees to either side."""
+    """A robot that follows its commands in a plane with one object.
+
+    Its field of view is 40 degrees to either side.
+    """
 
     def __init__(self, seeker, target=None, radius=0.15):
         self.seeker, self.target, self.radius = seeker, target, radius

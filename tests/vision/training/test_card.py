@@ -1,3 +1,5 @@
+"""The card of a trained network: facts, metrics and failures."""
+
 from __future__ import annotations
 
 import hashlib
@@ -25,8 +27,8 @@ def figures(classes):
 
 
 def test_card_has_facts_metrics_and_failures():
-    text = make_card("eye", {"command": "`a | b`"}, [EvaluationReport("Rooms", figures([None, 0]))])
-    assert text.startswith("# eye\n")
+    text = make_card("detector", {"command": "`a | b`"}, [EvaluationReport("Rooms", figures([None, 0]))])
+    assert text.startswith("# detector\n")
     assert "| command | `a \\| b` |" in text
     assert "| ball | 1 | 0.000 | 0.000 | 0.000 | 0.000 |" in text
     assert "- Rooms: of objects under 16 pixels it misses 100%." in text
@@ -34,7 +36,7 @@ def test_card_has_facts_metrics_and_failures():
 
 
 def test_card_of_perfect_network_has_no_failures():
-    text = make_card("eye", {}, [EvaluationReport("Rooms", figures([0, 1]))])
+    text = make_card("detector", {}, [EvaluationReport("Rooms", figures([0, 1]))])
     assert "| all | 2 | 1.000 | 1.000 | | |" in text
     assert text.endswith("## Where it fails\n\nNothing stands out in these images.\n")
 
@@ -70,7 +72,7 @@ def test_card_names_evaluation_worlds_also_used_for_training(tmp_path):
     )
     description = describe_origin(write_card(tmp_path / "seen", "maze", "house"), training_folder)
     assert description.endswith(" It was trained on other images of house.")
-    text = make_card("eye", {}, [EvaluationReport("Rooms", figures([0, 1]), description)])
+    text = make_card("detector", {}, [EvaluationReport("Rooms", figures([0, 1]), description)])
     assert f"## Rooms\n\n{description}\n\n1 images." in text
     assert describe_origin(tmp_path, training_folder) == ""
     assert describe_origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")

@@ -262,17 +262,17 @@ def test_batch_without_objects_has_loss():
 
 
 def test_train_command_trains_evaluates_and_writes_card(shapes, tmp_path, capsys, monkeypatch):
-    words = ["vision", "train", str(shapes), "-o", str(tmp_path), "--name", "eye", "--epochs", "2", "--size", "96x96"]
-    words += ["--channels", "4", "--threads", "1", "--held-out", str(shapes)]
+    words = ["vision", "train", str(shapes), "-o", str(tmp_path), "--name", "detector", "--epochs", "2"]
+    words += ["--size", "96x96", "--channels", "4", "--threads", "1", "--held-out", str(shapes)]
     monkeypatch.setattr(sys, "argv", ["linkwright", *words])
     assert main(words) == 0
     output = capsys.readouterr()
     assert output.err.count("epoch ") == 2
     assert output.out.count("mAP50 ") >= 2
-    card = (tmp_path / "eye.md").read_text(encoding="utf-8")
+    card = (tmp_path / "detector.md").read_text(encoding="utf-8")
     assert f"vision train {shapes}" in card
     assert "## Held out: shapes (val)" in card
-    assert main(["vision", "evaluate", str(tmp_path / "eye.onnx"), str(shapes), "--confusion"]) == 0
+    assert main(["vision", "evaluate", str(tmp_path / "detector.onnx"), str(shapes), "--confusion"]) == 0
     assert "8 images: mAP50" in capsys.readouterr().out
     assert main([*words, "--resume", "--epochs", "3"]) == 0
     assert capsys.readouterr().err.startswith("epoch 3 of 3")

@@ -1,3 +1,5 @@
+"""Data sets in the formats of YOLO and COCO."""
+
 from __future__ import annotations
 
 import json

@@ -32,7 +32,10 @@ pytestmark = pytest.mark.slow
 
 
 class Site:
-    """A robot behind a gateway, a cloud and a desk, each with its program; certificates and files are in a folder."""
+    """A robot behind a gateway, a cloud and a desk, each with its program.
+
+    Certificates and files are in a folder.
+    """
 
     def __init__(self, folder: Path) -> None:
         page = (DOCS / "beyond-one-machine.md").read_text(encoding="utf-8")

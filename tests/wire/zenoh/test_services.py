@@ -1,3 +1,5 @@
+"""Services between processes over Zenoh."""
+
 from __future__ import annotations
 
 import threading

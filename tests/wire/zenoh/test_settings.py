@@ -1,3 +1,5 @@
+"""Settings of Zenoh sessions: waits, failures and exits."""
+
 from __future__ import annotations
 
 import json

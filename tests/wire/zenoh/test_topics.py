@@ -1,3 +1,5 @@
+"""Topics between processes over Zenoh: discovery, domains and QoS."""
+
 from __future__ import annotations
 
 import signal
@@ -191,7 +193,10 @@ def generate_launch_description():
 
 
 def test_verb_receives_messages_of_launched_node(tmp_path):
-    """The launch sets Humble, whose types have no hash on the wire, for its nodes; the verb does not know that."""
+    """The launch sets Humble, whose types have no hash on the wire, for its nodes.
+
+    The verb does not know that.
+    """
     (tmp_path / "talk.launch.py").write_text(LAUNCH_FILE)
     words = [sys.executable, "-m", "linkwright", "launch", str(tmp_path / "talk.launch.py")]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=tmp_path) as launch:

@@ -83,7 +83,10 @@ def attached(link: str, held: Any) -> Any:
 
 
 def trajectory(*angles: float, seconds: float = 0.1) -> Any:
-    """Return a DisplayTrajectory of the shoulder; the wrist is off by half a meter from the start."""
+    """Return a DisplayTrajectory of the shoulder.
+
+    The wrist is off by half a meter from the start.
+    """
     part = RobotTrajectory()
     part.joint_trajectory.joint_names = ["shoulder"]
     for number, angle in enumerate(angles, start=1):

@@ -56,11 +56,11 @@ def mimic(master: str, rest: str = "") -> str:
     return f"<mimic joint='{master}' {rest}/>"
 
 
-class Stage:
+class NodeHarness:
     def __init__(self, graph: Graph, clock: JumpClock, log: list[LogRecord]) -> None:
         self.graph, self.clock, self.log = graph, clock, log
         self.library = DescriptionLibrary()
-        self.node = graph.create_node("audience")
+        self.node = graph.create_node("test_node")
         self.tf: list[TFMessage] = []
         self.tf_static: list[TFMessage] = []
         self.descriptions: list[str] = []
