@@ -45,8 +45,8 @@ class TestBench:
         """Configure and activate a controller with the interfaces that it requests."""
         if configure:
             controller.on_configure()
-        controller.commands = _chosen(self.commands, controller.command_interfaces())
-        controller.states = _chosen(self.states, controller.state_interfaces())
+        controller.commands = _select_interfaces(self.commands, controller.command_interfaces())
+        controller.states = _select_interfaces(self.states, controller.state_interfaces())
         controller.references = [
             CommandInterface(controller.name, reference_interface)
             for reference_interface in controller.reference_interfaces()
@@ -85,10 +85,10 @@ class TestBench:
         self.node.create_publisher(type_name, topic, 10).publish(message)
 
 
-def _chosen(interfaces: dict[str, Any], names: Any) -> list[Any]:
+def _select_interfaces(interfaces: dict[str, Any], names: Any) -> list[Any]:
     return list(interfaces.values()) if names is Interfaces.ALL else [interfaces[name] for name in names]
 
 
-def values(interfaces: list[Interface]) -> list[float]:
+def interface_values(interfaces: list[Interface]) -> list[float]:
     """Return the values of interfaces."""
     return [interface.value for interface in interfaces]

@@ -9,7 +9,7 @@ from linkwright.graph.actions.client import ActionClient
 from linkwright.messages import Duration, Header, Time, get_action, get_message
 from tests.control.bench import TestBench
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 JOINTS = ("shoulder", "elbow")
 
 
@@ -26,10 +26,10 @@ def trajectory(
     fields = ("positions", "velocities", "accelerations", "effort")
     trajectory_points = [
         point_type(
-            **dict(zip(fields, lists, strict=False)),
-            time_from_start=Duration.from_nanoseconds(round(seconds * SECOND)),
+            **dict(zip(fields, derivatives, strict=False)),
+            time_from_start=Duration.from_nanoseconds(round(seconds * SECOND_NS)),
         )
-        for seconds, *lists in points
+        for seconds, *derivatives in points
     ]
     header = Header(stamp=Time.from_nanoseconds(start_ns))
     return get_message("trajectory_msgs/msg/JointTrajectory")(

@@ -22,7 +22,7 @@ def test_controller_is_found_by_type():
 
 EXPONENTIAL = "control_filters/ExponentialFilterDouble"
 LIMITS = {"sampling_interval": 0.1, "max_value": 2.0, "min_value": 3.0}
-KEPT = exp(-2.0 * pi * 20.5 / (1000.0 * 10.0**-0.125))
+EXPONENTIAL_WEIGHT = exp(-2.0 * pi * 20.5 / (1000.0 * 10.0**-0.125))
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,7 @@ KEPT = exp(-2.0 * pi * 20.5 / (1000.0 * 10.0**-0.125))
             "control_filters/LowPassFilterDouble",
             {"sampling_frequency": 1000.0, "damping_frequency": 20.5, "damping_intensity": 1.25},
             [1.0, 2.0, 2.0],
-            [1.0, 1.0, KEPT + 2.0 * (1.0 - KEPT)],
+            [1.0, 1.0, EXPONENTIAL_WEIGHT + 2.0 * (1.0 - EXPONENTIAL_WEIGHT)],
         ),
         (
             "control_filters/RateLimiterDouble",

@@ -10,7 +10,7 @@ import pytest
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import SourceText
 from linkwright.graph.parameters.files import parse_parameters, read_parameter_file
-from tests.control.controllers.driving import stamped_twist, warnings
+from tests.control.controllers.driving import logged_warnings, stamped_twist
 
 FILE = Path(__file__).with_name("drives.yaml")
 TYPES = {
@@ -34,7 +34,7 @@ async def test_all_parameters_of_file_are_recognized(bench, name):
     parameters = read_parameter_file(FILE).for_node(f"/{name}")
     controller = bench.start(controller_class(TYPES[name]).variant(list(parameters)), name, **parameters)
     await bench.step(controller)
-    assert not warnings(bench)
+    assert not logged_warnings(bench)
 
 
 def documented_file(page: str) -> str:
@@ -54,4 +54,4 @@ async def test_documented_drive_starts(bench, page):
     bench.publish("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped_twist(second, 9.0))
     await bench.step(controller, 1.0)
     assert [command.value for command in controller.commands] == pytest.approx([0.8 / 0.06] * 2)
-    assert not warnings(bench)
+    assert not logged_warnings(bench)

@@ -12,12 +12,16 @@ from linkwright.control.controllers.joint_trajectory_controller import JointTraj
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Duration, Time, get_action, get_service
-from tests.control.controllers.arm import JOINTS, SECOND, SentGoal, run, tolerance, trajectory
+from tests.control.controllers.arm import JOINTS, SECOND_NS, SentGoal, run, tolerance, trajectory
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 TYPE = "trajectory_msgs/msg/JointTrajectory"
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
-BY_POSITION = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
+POSITION_PARAMETERS = {
+    "joints": list(JOINTS),
+    "command_interfaces": ["position"],
+    "state_interfaces": ["position", "velocity"],
+}
 
 
 class Arm:
@@ -25,7 +29,7 @@ class Arm:
 
     def __init__(self, bench: Any, **parameters: Any) -> None:
         self.bench = bench
-        facts = {**BY_POSITION, **parameters}
+        facts = {**POSITION_PARAMETERS, **parameters}
         for joint in JOINTS:
             bench.joint(joint, commands=tuple(facts["command_interfaces"]), position=0.0, velocity=0.0)
         self.stuck: set[str] = set()
@@ -61,7 +65,7 @@ def test_controller_is_found_by_type():
 async def test_joints_are_held_until_first_trajectory(bench):
     bench.joint("shoulder", commands=("position",), position=0.3, velocity=0.0)
     bench.joint("elbow", commands=("position",), position=-0.2, velocity=0.0)
-    controller = bench.start(JointTrajectoryController, **BY_POSITION)
+    controller = bench.start(JointTrajectoryController, **POSITION_PARAMETERS)
     await run(bench, controller, 0.05)
     assert [command.value for command in controller.commands] == [0.3, -0.2]
 
@@ -95,14 +99,14 @@ async def test_accelerations_are_commanded(bench):
         bench.joint(
             joint, commands=("position", "velocity", "acceleration"), position=0.0, velocity=0.0, acceleration=0.0
         )
-    three = ["position", "velocity", "acceleration"]
+    interfaces = ["position", "velocity", "acceleration"]
     controller = bench.start(
-        JointTrajectoryController, joints=list(JOINTS), command_interfaces=three, state_interfaces=three
+        JointTrajectoryController, joints=list(JOINTS), command_interfaces=interfaces, state_interfaces=interfaces
     )
     point = (2.0, [1.0, 1.0], [0.0, 0.0], [0.0, 0.0])
     bench.publish(TYPE, "/controller/joint_trajectory", trajectory(point))
     await run(bench, controller, 1.0)
-    values = [bench.commands[f"shoulder/{interface}"].value for interface in three]
+    values = [bench.commands[f"shoulder/{interface}"].value for interface in interfaces]
     assert values == pytest.approx([0.5, 15.0 / 16.0, 0.0], abs=1e-9)
 
 
@@ -118,14 +122,14 @@ async def test_effort_by_pid_moves_mass_along_trajectory(bench):
     gains = {joint: {"p": 400.0, "d": 40.0, "i": 10.0, "i_clamp": 5.0} for joint in JOINTS}
     arm = Arm(bench, command_interfaces=["effort"], gains=gains)
 
-    def fall() -> None:
+    def move_by_effort() -> None:
         for joint in JOINTS:
             position, velocity = (bench.states[f"{joint}/{interface}"] for interface in ("position", "velocity"))
             velocity.value += 0.01 * (arm.command(joint, "effort") - 1.0)
             position.value += 0.01 * velocity.value
 
     goal = arm.send_goal(trajectory((2.0, [1.0, 0.5], [0.0, 0.0])))
-    await run(bench, arm.controller, 4.0, fall)
+    await run(bench, arm.controller, 4.0, move_by_effort)
     assert bench.states["shoulder/position"].value == pytest.approx(1.0, abs=0.01)
     assert goal.status == SUCCEEDED
 
@@ -171,18 +175,24 @@ async def test_joints_omitted_from_partial_goal_are_held(bench):
     assert (arm.command("shoulder"), arm.command("elbow")) == (0.7, 1.0)
 
 
-GOOD = (1.0, [1.0, 1.0])
+VALID_POINT = (1.0, [1.0, 1.0])
 
 
 @pytest.mark.parametrize(
     ("message", "expected"),
     [
-        (trajectory(GOOD, names=("shoulder",)), "Joints on incoming trajectory don't match the controller joints."),
-        (trajectory(names=JOINTS), "Empty trajectory received."),
-        (trajectory(GOOD, names=("shoulder", "knee")), "Incoming joint knee doesn't match the controller's joints."),
-        (trajectory(GOOD, names=("elbow", "elbow")), "Incoming joint elbow appears twice."),
         (
-            trajectory(GOOD, (1.0, [0.0, 0.0])),
+            trajectory(VALID_POINT, names=("shoulder",)),
+            "Joints on incoming trajectory don't match the controller joints.",
+        ),
+        (trajectory(names=JOINTS), "Empty trajectory received."),
+        (
+            trajectory(VALID_POINT, names=("shoulder", "knee")),
+            "Incoming joint knee doesn't match the controller's joints.",
+        ),
+        (trajectory(VALID_POINT, names=("elbow", "elbow")), "Incoming joint elbow appears twice."),
+        (
+            trajectory(VALID_POINT, (1.0, [0.0, 0.0])),
             "Time between points 0 and 1 is not strictly increasing, it is 1.000000 and 1.000000 respectively",
         ),
         (
@@ -204,7 +214,7 @@ GOOD = (1.0, [1.0, 1.0])
             "Trajectories with effort fields are currently not supported.",
         ),
         (
-            trajectory((0.5, [1.0, 1.0]), start_ns=SECOND // 4),
+            trajectory((0.5, [1.0, 1.0]), start_ns=SECOND_NS // 4),
             "Received trajectory with non-zero start time (0.250000) that ends in the past (0.750000)",
         ),
     ],
@@ -250,7 +260,7 @@ async def test_points_without_positions_are_integrated_if_allowed(bench):
 async def test_trajectory_with_future_start_reaches_first_point_on_time(bench):
     arm = Arm(bench)
     await arm.run(1.0)
-    arm.publish(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND))
+    arm.publish(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND_NS))
     await arm.run(1.0)
     assert arm.command("shoulder") == pytest.approx(0.5, abs=0.01)
     await arm.run(1.0)
@@ -260,7 +270,7 @@ async def test_trajectory_with_future_start_reaches_first_point_on_time(bench):
 async def test_trajectory_with_past_start_continues_at_current_time(bench):
     arm = Arm(bench)
     await arm.run(1.0)
-    arm.publish(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND // 2))
+    arm.publish(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND_NS // 2))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(1.01)
 
@@ -394,7 +404,7 @@ async def test_inactive_controller_rejects_goals_and_ends_current_goal(bench):
     await arm.run(0.5)
     arm.controller.on_deactivate()
     bench.exchange.deliver()
-    rejected_goal = arm.send_goal(trajectory(GOOD))
+    rejected_goal = arm.send_goal(trajectory(VALID_POINT))
     await bench.graph.settle()
     assert (current_goal.status, rejected_goal.accepted) == (CANCELED, False)
     assert current_goal.result.error_string == "Current goal cancelled during deactivate transition."
@@ -498,14 +508,14 @@ async def test_query_state_returns_state_at_time(bench):
     query = get_service("control_msgs/srv/QueryTrajectoryState")
     client = bench.node.create_client(query, "/controller/query_state")
 
-    async def ask(seconds: float) -> Any:
-        future = client.call_async(query.Request(time=Time.from_nanoseconds(round(seconds * SECOND))))
+    async def query_state(seconds: float) -> Any:
+        future = client.call_async(query.Request(time=Time.from_nanoseconds(round(seconds * SECOND_NS))))
         await arm.run(0.01)
         return future.result()
 
     arm.publish(trajectory((1.0, [1.0, 0.0])))
     await arm.run(0.1)
-    response = await ask(0.51)
+    response = await query_state(0.51)
     assert (response.success, response.name) == (True, list(JOINTS))
     assert response.position[0] == pytest.approx(0.5)
     assert response.velocity[0] == pytest.approx(1.0)
@@ -513,7 +523,7 @@ async def test_query_state_returns_state_at_time(bench):
         (0.001, "Requested sample time is earlier than the current trajectory start time."),
         (9.0, "Requested sample time precedes the current trajectory end time."),
     ):
-        response = await ask(seconds)
+        response = await query_state(seconds)
         assert (response.success, response.message) == (False, text)
 
 
@@ -532,7 +542,7 @@ async def test_query_state_returns_state_at_time(bench):
 )
 async def test_invalid_parameters_are_rejected(bench, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
-        bench.make(JointTrajectoryController, **{**BY_POSITION, **parameters})
+        bench.make(JointTrajectoryController, **{**POSITION_PARAMETERS, **parameters})
 
 
 @pytest.mark.parametrize("kind", ["velocity", "effort"])

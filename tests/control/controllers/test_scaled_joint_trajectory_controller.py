@@ -10,19 +10,19 @@ from linkwright.messages import get_action
 from tests.control.controllers.arm import JOINTS, SentGoal, run, trajectory
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
-KIND = "ur_controllers/ScaledJointTrajectoryController"
-FACTOR = "speed_scaling/speed_scaling_factor"
-SAID = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
+TYPE = "ur_controllers/ScaledJointTrajectoryController"
+SCALING_INTERFACE = "speed_scaling/speed_scaling_factor"
+PARAMETERS = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
 SUCCEEDED = 4
 
 
-async def position_after(bench, seconds, factor=None, **parameters):
+async def run_goal(bench, seconds, factor=None, **parameters):
     """Return the first joint's position some seconds after a goal of 2 rad in 2 s, and the goal."""
     for joint in JOINTS:
         bench.joint(joint, commands=("position",), position=0.0, velocity=0.0)
     if factor is not None:
-        bench.states[FACTOR] = StateInterface(*FACTOR.split("/"), factor)
-    controller = bench.start(controller_class(KIND), **SAID, **parameters)
+        bench.states[SCALING_INTERFACE] = StateInterface(*SCALING_INTERFACE.split("/"), factor)
+    controller = bench.start(controller_class(TYPE), **PARAMETERS, **parameters)
 
     def follow_commands():
         for name, command in bench.commands.items():
@@ -36,16 +36,16 @@ async def position_after(bench, seconds, factor=None, **parameters):
 
 @pytest.mark.parametrize(("factor", "expected"), [(1.0, 1.0), (0.5, 0.5), (0.0, 0.0)])
 async def test_trajectory_advances_at_robot_speed_scaling(bench, factor, expected):
-    position, _ = await position_after(bench, 1.0, factor)
+    position, _ = await run_goal(bench, 1.0, factor)
     assert position == pytest.approx(expected, abs=0.03)
 
 
 async def test_scaled_goal_takes_longer_and_succeeds(bench):
-    position, goal = await position_after(bench, 4.2, 0.5)
+    position, goal = await run_goal(bench, 4.2, 0.5)
     assert position == pytest.approx(2.0)
     assert goal.status == SUCCEEDED
 
 
 async def test_trajectory_runs_unscaled_without_interface(bench):
-    position, _ = await position_after(bench, 1.0, speed_scaling_interface_name="")
+    position, _ = await run_goal(bench, 1.0, speed_scaling_interface_name="")
     assert position == pytest.approx(1.0, abs=0.03)

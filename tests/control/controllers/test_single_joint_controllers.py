@@ -16,13 +16,13 @@ from tests.control.robots import robot
 GAINS = {"pid": {"p": 10.0, "d": 1.0}}
 
 
-def start(bench, kind: str, interface: str, **parameters):
+def start_controller(bench, kind: str, interface: str, **parameters):
     """Return the active controller of the joint ``hip``, which is at 0.5 rad and turns at 2 rad/s."""
     bench.joint("hip", commands=(interface,), position=0.5, velocity=2.0)
     return bench.start(controller_class(kind), "hip_controller", joint="hip", **parameters)
 
 
-def send(bench, value: float) -> None:
+def publish_command(bench, value: float) -> None:
     bench.publish("std_msgs/msg/Float64", "/hip_controller/command", get_message("std_msgs/msg/Float64")(data=value))
 
 
@@ -31,14 +31,14 @@ def send(bench, value: float) -> None:
     [("Position", "position", 0.5), ("Velocity", "velocity", 0.0), ("Effort", "effort", 0.0)],
 )
 async def test_command_is_forwarded_to_the_joint(bench, kind, interface, first):
-    controller = start(bench, f"{interface}_controllers/Joint{kind}Controller", interface)
+    controller = start_controller(bench, f"{interface}_controllers/Joint{kind}Controller", interface)
     command = bench.commands[f"hip/{interface}"]
     await bench.step(controller)
     assert command.value == first
-    send(bench, 1.25)
+    publish_command(bench, 1.25)
     await bench.step(controller)
     assert command.value == 1.25
-    send(bench, nan)
+    publish_command(bench, nan)
     await bench.step(controller)
     assert command.value == 1.25
     controller.on_deactivate()
@@ -46,34 +46,34 @@ async def test_command_is_forwarded_to_the_joint(bench, kind, interface, first):
 
 
 async def test_effort_follows_the_error_of_the_position(bench):
-    controller = start(bench, "effort_controllers/JointPositionController", "effort", pid={"p": 10.0})
+    controller = start_controller(bench, "effort_controllers/JointPositionController", "effort", pid={"p": 10.0})
     await bench.step(controller)
     assert bench.commands["hip/effort"].value == 0.0
-    send(bench, 0.75)
+    publish_command(bench, 0.75)
     await bench.step(controller)
     assert bench.commands["hip/effort"].value == pytest.approx(2.5)
 
 
 async def test_derivative_gain_acts_on_the_change_of_the_error(bench):
-    controller = start(bench, "effort_controllers/JointPositionController", "effort", **GAINS)
+    controller = start_controller(bench, "effort_controllers/JointPositionController", "effort", **GAINS)
     await bench.step(controller)
-    send(bench, 0.75)
+    publish_command(bench, 0.75)
     await bench.step(controller)
     assert bench.commands["hip/effort"].value == pytest.approx(2.5 + 0.25 / 0.01)
 
 
 async def test_effort_follows_the_error_of_the_velocity(bench):
-    controller = start(bench, "effort_controllers/JointVelocityController", "effort", pid={"p": 3.0})
+    controller = start_controller(bench, "effort_controllers/JointVelocityController", "effort", pid={"p": 3.0})
     await bench.step(controller)
     assert bench.commands["hip/effort"].value == pytest.approx(-6.0)
-    send(bench, 2.5)
+    publish_command(bench, 2.5)
     await bench.step(controller)
     assert bench.commands["hip/effort"].value == pytest.approx(1.5)
 
 
 async def test_velocity_follows_the_error_of_the_position(bench):
-    controller = start(bench, "velocity_controllers/JointPositionController", "velocity", pid={"p": 4.0})
-    send(bench, 1.0)
+    controller = start_controller(bench, "velocity_controllers/JointPositionController", "velocity", pid={"p": 4.0})
+    publish_command(bench, 1.0)
     await bench.step(controller)
     assert bench.commands["hip/velocity"].value == pytest.approx(2.0)
 
@@ -105,14 +105,14 @@ def test_integral_needs_a_bound(bounds, expected):
 
 
 async def test_velocity_stops_without_its_commander(bench):
-    controller = start(bench, "velocity_controllers/JointVelocityController", "velocity")
+    controller = start_controller(bench, "velocity_controllers/JointVelocityController", "velocity")
     assert controller._stop_motion() is False
-    send(bench, 1.0)
+    publish_command(bench, 1.0)
     await bench.step(controller)
     assert controller._stop_motion() is True
     await bench.step(controller)
     assert bench.commands["hip/velocity"].value == 0.0
-    position = start(bench, "position_controllers/JointPositionController", "position")
+    position = start_controller(bench, "position_controllers/JointPositionController", "position")
     assert position._stop_motion() is False
 
 

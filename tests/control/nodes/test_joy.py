@@ -60,22 +60,22 @@ def joy_messages(harness):
 
 
 @pytest.fixture
-async def start(harness):
+async def start_node(harness):
     nodes = []
 
-    def node(kind=JoyNode, **parameters):
+    def start_node(kind=JoyNode, **parameters):
         nodes.append(kind(harness.graph, NodeOptions(parameters=parameters)))
         return nodes[-1]
 
-    yield node
+    yield start_node
     for joy_node in nodes:
         joy_node.close()
 
 
-async def test_axes_and_buttons_match_ros(joystick, harness, joy_messages, start):
+async def test_axes_and_buttons_match_ros(joystick, harness, joy_messages, start_node):
     joystick.plug_in()
     joystick.send((AXIS | INITIAL, 0, 0), (AXIS | INITIAL, 1, 0), (BUTTON | INITIAL, 0, 0), (BUTTON | INITIAL, 1, 0))
-    node = start(deadzone=0.2, autorepeat_rate=0.0)
+    node = start_node(deadzone=0.2, autorepeat_rate=0.0)
     await eventually(lambda: len(node._buttons) == 2)
     await harness.clock.advance(0.01)
     assert [(list(message.axes), list(message.buttons)) for message in joy_messages] == [([0, 0], [0, 0])], (
@@ -104,18 +104,18 @@ def test_deadzone_is_continuous():
     assert deflection(-18022, 0.1) == pytest.approx(0.5, abs=1e-4)
 
 
-async def test_unchanged_state_is_republished_at_autorepeat_rate(joystick, harness, joy_messages, start):
+async def test_unchanged_state_is_republished_at_autorepeat_rate(joystick, harness, joy_messages, start_node):
     joystick.plug_in()
     joystick.send((AXIS | INITIAL, 0, 0))
-    node = start(autorepeat_rate=10.0)
+    node = start_node(autorepeat_rate=10.0)
     await eventually(lambda: len(node._axes) == 1)
     await harness.clock.advance(1.005)
     assert len(joy_messages) == 11
 
 
-async def test_sticky_buttons_toggle(joystick, harness, joy_messages, start):
+async def test_sticky_buttons_toggle(joystick, harness, joy_messages, start_node):
     joystick.plug_in()
-    start(sticky_buttons=True, autorepeat_rate=0.0)
+    start_node(sticky_buttons=True, autorepeat_rate=0.0)
     for count, value in enumerate((1, 0, 1), 1):
         joystick.send((BUTTON, 0, value))
         if value:
@@ -123,8 +123,8 @@ async def test_sticky_buttons_toggle(joystick, harness, joy_messages, start):
     assert [list(message.buttons) for message in joy_messages] == [[1], [0]]
 
 
-async def test_missing_joystick_is_reported_once(joystick, harness, joy_messages, start, logged):
-    node = start(autorepeat_rate=0.0)
+async def test_missing_joystick_is_reported_once(joystick, harness, joy_messages, start_node, logged):
+    node = start_node(autorepeat_rate=0.0)
     await harness.clock.advance(5.0)
     assert logged("WARN") == ["the joystick /dev/input/js0 is not connected; waiting for it"]
     joystick.plug_in()
@@ -135,9 +135,9 @@ async def test_missing_joystick_is_reported_once(joystick, harness, joy_messages
     assert list(joy_messages[-1].buttons) == [1]
 
 
-async def test_disconnected_joystick_releases_axes_and_buttons(joystick, harness, joy_messages, start, logged):
+async def test_disconnected_joystick_releases_axes_and_buttons(joystick, harness, joy_messages, start_node, logged):
     joystick.plug_in()
-    start(autorepeat_rate=0.0)
+    start_node(autorepeat_rate=0.0)
     joystick.send((BUTTON, 0, 1), (AXIS, 0, 32767))
     await eventually(lambda: joy_messages and list(joy_messages[-1].axes))
     joystick.pull_out()
@@ -150,16 +150,16 @@ async def test_disconnected_joystick_releases_axes_and_buttons(joystick, harness
     await eventually(lambda: list(joy_messages[-1].buttons) == [0, 0, 1])
 
 
-async def test_unreadable_joystick_is_reported(tmp_path, harness, start, logged):
-    start(JoyLinuxNode, dev=str(tmp_path))  # a folder is not a joystick
+async def test_unreadable_joystick_is_reported(tmp_path, harness, start_node, logged):
+    start_node(JoyLinuxNode, dev=str(tmp_path))  # a folder is not a joystick
     (text,) = logged("WARN")
     assert text.startswith(f"the joystick {tmp_path} cannot be read: ")
 
 
-async def test_joy_linux_accepts_device_path(tmp_path, harness, joy_messages, start):
+async def test_joy_linux_accepts_device_path(tmp_path, harness, joy_messages, start_node):
     joystick = Joystick(tmp_path / "mine")
     joystick.plug_in()
-    start(JoyLinuxNode, dev=str(joystick.path), coalesce_interval=0.0, autorepeat_rate=0.0)
+    start_node(JoyLinuxNode, dev=str(joystick.path), coalesce_interval=0.0, autorepeat_rate=0.0)
     joystick.send((AXIS, 0, -32767))
     await eventually(lambda: joy_messages)
     assert list(joy_messages[0].axes) == [1.0]
@@ -201,18 +201,18 @@ class Pilot:
 AXES = [0.5, 0.25, 1.0, 0.0, 0.0, 1.0]
 
 
-async def test_enable_button_must_be_held(harness, start):
+async def test_enable_button_must_be_held(harness, start_node):
     pilot = Pilot(harness)
-    start(TeleopTwistJoy)
+    start_node(TeleopTwistJoy)
     assert await pilot.hold(AXES) is None
     assert await pilot.hold(AXES, 5) == (0.5, 0, 0.5)
     assert await pilot.hold(AXES) == (0, 0, 0)
     assert await pilot.hold(AXES) is None, "the robot is stopped only once"
 
 
-async def test_turbo_scales_and_additional_axes(harness, start):
+async def test_turbo_scales_and_additional_axes(harness, start_node):
     pilot = Pilot(harness)
-    start(
+    start_node(
         TeleopTwistJoy,
         **{"enable_turbo_button": 7, "axis_linear.x": 1, "axis_linear.y": 0, "scale_linear.y": 2.0},
         **{"scale_linear_turbo.x": 4.0, "axis_angular.yaw": 17},
@@ -221,29 +221,29 @@ async def test_turbo_scales_and_additional_axes(harness, start):
     assert await pilot.hold(AXES, 7) == (1.0, 0, 0)
 
 
-async def test_inverted_reverse_and_optional_enable_button(harness, start):
+async def test_inverted_reverse_and_optional_enable_button(harness, start_node):
     pilot = Pilot(harness)
-    start(TeleopTwistJoy, inverted_reverse=True, require_enable_button=False)
+    start_node(TeleopTwistJoy, inverted_reverse=True, require_enable_button=False)
     assert await pilot.hold([0, 0, 1.0, 0, 0, -1.0]) == (-0.5, 0, -0.5)
 
 
-async def test_parameters_can_be_changed(harness, start):
+async def test_parameters_can_be_changed(harness, start_node):
     pilot = Pilot(harness)
-    node = start(TeleopTwistJoy)
+    node = start_node(TeleopTwistJoy)
     assert await harness.set(node, enable_button=1) == [(True, "")]
     assert await pilot.hold(AXES, 1) == (0.5, 0, 0.5)
 
 
-async def test_message_type_matches_subscriber(harness, start):
+async def test_message_type_matches_subscriber(harness, start_node):
     pilot = Pilot(harness, "geometry_msgs/msg/TwistStamped")
-    start(TeleopTwistJoy, frame="base_link")
+    start_node(TeleopTwistJoy, frame="base_link")
     assert await pilot.hold(AXES, 5) == (0.5, 0, 0.5)
     assert pilot.velocities[0].header.frame_id == "base_link"
 
 
-async def test_lost_joy_publisher_stops_robot(harness, start, logged):
+async def test_lost_joy_publisher_stops_robot(harness, start_node, logged):
     pilot = Pilot(harness)
-    start(TeleopTwistJoy)
+    start_node(TeleopTwistJoy)
     await pilot.hold(AXES, 5)
     pilot.velocities.clear()
     pilot.node.destroy_node()

@@ -141,7 +141,7 @@ async def test_two_publishers_on_one_input_topic_are_reported(mux_harness):
     start_mux(mux_harness.harness)
     transport = RemoteTransport(mux_harness.harness.graph)
     topics_and_nodes = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
-    tablet, joystick, other = (RemotePublisher(transport, topic, node) for topic, node in topics_and_nodes)
+    tablet, joystick, second_joystick = (RemotePublisher(transport, topic, node) for topic, node in topics_and_nodes)
 
     async def drive(*sources):
         for _ in range(20):
@@ -156,7 +156,7 @@ async def test_two_publishers_on_one_input_topic_are_reported(mux_harness):
 
     await drive(tablet, joystick)
     assert not conflict_warnings()
-    await drive(tablet, joystick, other)
+    await drive(tablet, joystick, second_joystick)
     (text,) = conflict_warnings()
     assert "'/joy', '/pad' send commands on '/joy_vel'" in text
 
