@@ -41,14 +41,14 @@ def test_compressed_file_without_folder_has_same_messages(
 ) -> None:
     folder = recorded(tmp_path / "bag", plugin, mode)
     (file,) = (path for path in folder.iterdir() if path.name != "metadata.yaml")
-    alone = tmp_path / file.name
-    shutil.copy(file, alone)
-    assert is_recording(alone)
-    with BagReader(folder) as whole, BagReader(alone) as single:
-        assert list(single.messages()) == list(whole.messages())
-        assert single.storage == whole.storage == plugin.name.lower()
-        for at in (START - 1, START, START + 7, START + 30):
-            assert single.state_at(["/a", "/b"], at) == whole.state_at(["/a", "/b"], at)
+    file_copy = tmp_path / file.name
+    shutil.copy(file, file_copy)
+    assert is_recording(file_copy)
+    with BagReader(folder) as folder_reader, BagReader(file_copy) as file_reader:
+        assert list(file_reader.messages()) == list(folder_reader.messages())
+        assert file_reader.storage == folder_reader.storage == plugin.name.lower()
+        for time_ns in (START - 1, START, START + 7, START + 30):
+            assert file_reader.state_at(["/a", "/b"], time_ns) == folder_reader.state_at(["/a", "/b"], time_ns)
     (folder / "metadata.yaml").unlink()
     assert is_recording(folder)
     with BagReader(folder) as bag:

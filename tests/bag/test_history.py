@@ -181,8 +181,8 @@ def test_unmoving_joint_states_keep_two_messages_per_ten_seconds() -> None:
 def test_moving_joint_states_are_all_kept() -> None:
     clock = Clock()
     history = History(10**8, clock)
-    still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
-    states(clock, history, [*still, *moves, *still])
+    resting, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
+    states(clock, history, [*resting, *moves, *resting])
     assert history.count == 2 + 300 + 2
     assert positions(history.state_at(["/joint_states"], int(2.5 * SECOND)))[0][0] == 0.0
     assert positions(history.state_at(["/joint_states"], int(4.5 * SECOND)))[0] == pytest.approx((1.51, 4.5))
@@ -195,8 +195,8 @@ def test_moving_joint_states_are_all_kept() -> None:
 def test_messages_between_spans_requested_interval_of_unmoving_robot() -> None:
     clock = Clock()
     history = History(10**8, clock)
-    still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
-    states(clock, history, [*still, *moves, *still])
+    resting, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
+    states(clock, history, [*resting, *moves, *resting])
     for start, end, last in ((1.0, 2.5, 0.0), (2.0, 4.5, 1.51), (4.5, 8.9, 0.0)):
         part = history.messages_between(int(start * SECOND), int(end * SECOND))
         assert (part[0][1], part[-1][1]) == (int(start * SECOND), int(end * SECOND))
@@ -227,10 +227,10 @@ def transforms(history: History, clock: Clock, x: float) -> None:
     history.add("/tf", data, content=content_of(TFMessage.TYPE_NAME, data))
 
 
-def tick(history: History, clock: Clock, told_ns: int) -> None:
+def publish_clock(history: History, clock: Clock, simulated_ns: int) -> None:
     """Return a message of a simulated clock at the current time."""
     time = SimulatedTime()
-    time.clock.sec, time.clock.nanosec = divmod(told_ns, SECOND)
+    time.clock.sec, time.clock.nanosec = divmod(simulated_ns, SECOND)
     data = serialize(time)
     history.add("/clock", data, content=content_of(SimulatedTime.TYPE_NAME, data))
 
@@ -267,7 +267,7 @@ def test_clock_alone_is_thinned_and_interpolated() -> None:
     history = History(10**8, clock)
     for number in range(6000):
         clock.ns = number * SECOND // 100
-        tick(history, clock, 5 * SECOND + clock.ns // 2)
+        publish_clock(history, clock, 5 * SECOND + clock.ns // 2)
     assert history.count == 12
     for second in (0.0, 0.5, 7.25, 29.99, 59.99):
         assert simulated_time_at(history, second) == pytest.approx(5 + second / 2, abs=0.01)
@@ -279,7 +279,7 @@ def test_clock_is_kept_completely_while_robot_moves() -> None:
     for number in range(500):
         clock.ns = number * SECOND // 100
         transforms(history, clock, number / 100)
-        tick(history, clock, clock.ns)
+        publish_clock(history, clock, clock.ns)
     assert history.count == 1000
 
 
@@ -288,7 +288,7 @@ def test_clock_reset_is_detected() -> None:
     history = History(10**8, clock)
     for number in range(800):
         clock.ns = number * SECOND // 100
-        tick(history, clock, clock.ns % (4 * SECOND))
+        publish_clock(history, clock, clock.ns % (4 * SECOND))
     part = history.messages_between(0, clock.ns)
     assert last_reset_ns(part) == 4 * SECOND
     assert simulated_time_at(history, 3.99) == pytest.approx(3.99)
@@ -300,7 +300,7 @@ def test_messages_between_thinned_clock_ticks_keep_simulated_times() -> None:
     history = History(10**8, clock)
     for number in range(1000):
         clock.ns = number * SECOND // 100
-        tick(history, clock, SECOND + clock.ns)
+        publish_clock(history, clock, SECOND + clock.ns)
         if number in (333, 667):
             transforms(history, clock, number)
     stamps = [stamp for name, stamp, _ in to_simulated_time(history.messages_between(0, clock.ns)) if name == "/tf"]

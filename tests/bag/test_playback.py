@@ -76,8 +76,8 @@ def test_state_at_returns_last_message_of_each_topic_and_transforms(
     tmp_path: Path, storage: str, compressed: bool
 ) -> None:
     with BagReader(recorded(tmp_path, storage, compressed=compressed)) as bag:
-        at = START + 7 * SECOND + 1
-        assert words(bag.state_at(TOPICS, at)) == [
+        time_ns = START + 7 * SECOND + 1
+        assert words(bag.state_at(TOPICS, time_ns)) == [
             "static 0", "<robot/>", "b 4", "moving 11", "moving 12", "moving 13", "moving 14", "a 7",
         ]  # fmt: skip
         assert words(bag.state_at(["/tf_static", "/a"], START + 12 * SECOND)) == ["static 0", "static 18", "a 12"]
@@ -86,18 +86,18 @@ def test_state_at_returns_last_message_of_each_topic_and_transforms(
         assert bag.time_before(["/a"], START) is None
 
 
-def without_index(whole: bytes, *, message_indexes: bool) -> bytes:
+def without_index(data: bytes, *, message_indexes: bool) -> bytes:
     """Write a finished MCAP file without a summary, and without chunk indexes on request."""
-    records, place = bytearray(whole[:8]), 8
+    records, place = bytearray(data[:8]), 8
     while True:
-        kind, length = struct.unpack_from("<BQ", whole, place)
+        kind, length = struct.unpack_from("<BQ", data, place)
         end = place + 9 + length
         if kind == 0x0F:  # the record DataEnd
             break
         if kind != 0x07 or message_indexes:
-            records += whole[place:end]
+            records += data[place:end]
         place = end
-    return bytes(records) + struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQ", 0x02, 20) + bytes(20) + whole[:8]
+    return bytes(records) + struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQ", 0x02, 20) + bytes(20) + data[:8]
 
 
 @pytest.mark.parametrize("compressed", [False, True])
@@ -106,18 +106,18 @@ def test_bag_reader_indexes_mcap_without_index(tmp_path: Path, way: str, compres
     folder = recorded(tmp_path, chunk=3, compressed=compressed)
     (file,) = folder.glob("*.mcap")
     with BagReader(file) as bag:
-        whole = list(bag.messages())
-        at = START + 7 * SECOND + 1
-        state, counts = bag.state_at(TOPICS, at), bag.counts(4)
-    bare = tmp_path / "bare.mcap"
+        messages = list(bag.messages())
+        time_ns = START + 7 * SECOND + 1
+        state, counts = bag.state_at(TOPICS, time_ns), bag.counts(4)
+    unindexed = tmp_path / "bare.mcap"
     data = file.read_bytes()
-    bare.write_bytes(
+    unindexed.write_bytes(
         data[:-20] if way == "cut off" else without_index(data, message_indexes=way != "without any index")
     )
-    with BagReader(bare) as bag:
+    with BagReader(unindexed) as bag:
         assert bool(bag.findings) == (way == "cut off")
-        assert list(bag.messages()) == whole
-        assert bag.state_at(TOPICS, at) == state
+        assert list(bag.messages()) == messages
+        assert bag.state_at(TOPICS, time_ns) == state
         assert bag.counts(4) == counts
         assert {topic.name: topic.count for topic in bag.topics} == {name: sum(row) for name, row in counts.items()}
 
@@ -142,17 +142,19 @@ def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> 
             for topic in topics[: 1 + number % 4]:
                 writer.write(topic, START + stamp, transform(f"{number}") if "tf" in topic else text(f"{number}"))
     with BagReader(tmp_path / "bag") as bag:
-        whole = list(bag.messages())
-        for at in sorted({START + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
-            before = [message for message in whole if message[1] <= at]
+        messages = list(bag.messages())
+        for time_ns in sorted({START + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
+            before = [message for message in messages if message[1] <= time_ns]
             transforms = [message for message in before if message[0] == "/tf"]
-            since = min(at, transforms[-1][1] if transforms and transforms[-1][1] < at - 2 * SECOND else at)
+            since = min(
+                time_ns, transforms[-1][1] if transforms and transforms[-1][1] < time_ns - 2 * SECOND else time_ns
+            )
             moving = [transform for transform in transforms if transform[1] >= since - 2 * SECOND]
             last = [[message for message in before if message[0] == topic][-1:] for topic in ("/a", "/b")]
             static = [message for message in before if message[0] == "/tf_static"]
-            assert sorted(bag.state_at(topics, at)) == sorted([*static, *moving, *last[0], *last[1]])
-            assert bag.time_before(topics, at) == max(
-                (message[1] for message in whole if message[1] < at), default=None
+            assert sorted(bag.state_at(topics, time_ns)) == sorted([*static, *moving, *last[0], *last[1]])
+            assert bag.time_before(topics, time_ns) == max(
+                (message[1] for message in messages if message[1] < time_ns), default=None
             )
 
 
@@ -294,8 +296,8 @@ def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: 
         for stamp in (0, 59, 60, 180):
             writer.write("/tf", START + stamp * SECOND, transform(f"{stamp}"))
     with BagReader(tmp_path / "bag") as bag:
-        for at, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
-            assert [message[1] for message in bag.state_at(["/tf"], START + at * SECOND)] == [
+        for time_ns, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
+            assert [message[1] for message in bag.state_at(["/tf"], START + time_ns * SECOND)] == [
                 START + stamp * SECOND for stamp in stamps
             ]
 

@@ -77,8 +77,8 @@ async def test_player_rate_is_set_and_returned(scene, clock):
     scene = scene()
     await clock.advance(0.5)
     assert (await scene.call("set_rate", rate=10.0)).success
-    for wrong in (0.0, -1.0, float("nan"), float("inf")):
-        assert not (await scene.call("set_rate", rate=wrong)).success
+    for invalid_rate in (0.0, -1.0, float("nan"), float("inf")):
+        assert not (await scene.call("set_rate", rate=invalid_rate)).success
     assert (await scene.call("get_rate")).rate == 10.0
     await clock.advance(0.3)
     assert scene.heard == ["0", "1", "2", "3"]
@@ -123,8 +123,8 @@ async def test_loop_over_zero_duration_recording_does_not_block(clock, tmp_path)
 async def test_player_seek_continues_from_given_time(scene, clock, paused):
     scene = scene(paused=paused)
     await clock.advance(0.5)
-    there = START // SECOND + 3
-    assert (await scene.call("seek", time=Time(sec=there))).success
+    seek_s = START // SECOND + 3
+    assert (await scene.call("seek", time=Time(sec=seek_s))).success
     if paused:
         await scene.call("resume")
     await clock.advance(0.9)

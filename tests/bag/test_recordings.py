@@ -103,8 +103,11 @@ def test_rosbags_library_reads_types_and_content(tmp_path: Path, storage: str) -
 def test_compressed_recording_is_smaller_with_equal_messages(tmp_path: Path) -> None:
     (tmp_path / "plain").mkdir()
     (tmp_path / "small").mkdir()
-    plain, small = write(tmp_path / "plain", count=400), write(tmp_path / "small", count=400, compression="storage")
-    with BagReader(plain) as plain_bag, BagReader(small) as small_bag:
+    plain, compressed = (
+        write(tmp_path / "plain", count=400),
+        write(tmp_path / "small", count=400, compression="storage"),
+    )
+    with BagReader(plain) as plain_bag, BagReader(compressed) as small_bag:
         assert list(plain_bag.messages()) == list(small_bag.messages())
         assert small_bag.files[0].stat().st_size < plain_bag.files[0].stat().st_size / 2
 
@@ -182,9 +185,9 @@ def test_numbered_files_without_metadata_form_one_recording(tmp_path: Path, stor
     with BagReader(tmp_path / "drive") as bag:
         assert {topic.name: topic.count for topic in bag.topics} == {"/chatter": 9, "/other": 1}
         assert (bag.start_ns, bag.end_ns) == (START, START + 2_800_000_000)
-        whole = list(bag.messages())
-        assert texts(whole) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
-        assert [stamp for _, stamp, _ in whole] == sorted(stamp for _, stamp, _ in whole)
+        messages = list(bag.messages())
+        assert texts(messages) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
+        assert [stamp for _, stamp, _ in messages] == sorted(stamp for _, stamp, _ in messages)
         assert texts(bag.messages(["/chatter"], START + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
         assert texts(bag.state_at(["/chatter", "/other"], START + 1_900_000_000)) == ["early", "1.2"]
         assert bag.time_before(["/chatter"], START + 1_000_000_000) == START + 800_000_000
@@ -290,8 +293,8 @@ def test_truncated_file_gives_complete_chunks(tmp_path: Path, cut: int, left: in
             if number % 100 == 99:
                 writer.flush()
     file = path / "bag_0.mcap"
-    whole = file.read_bytes()
-    file.write_bytes(whole[:-cut])
+    data = file.read_bytes()
+    file.write_bytes(data[:-cut])
     with BagReader(path) as bag:
         stamps = [stamp - START for _, stamp, _ in bag.messages()]
         assert [finding.code for finding in bag.findings] == ["BAG109"]
@@ -388,14 +391,14 @@ def test_playing_qos_uses_largest_recorded_history() -> None:
     """History and depth do not affect compatibility (as in rosbag2)."""
     profiles = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
     assert profile_for_playing(profiles) == profiles[1]
-    everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    assert profile_for_playing([*profiles, everything]) == everything
+    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    assert profile_for_playing([*profiles, keep_all]) == keep_all
 
 
 def test_playing_qos_defaults_to_depth_ten_if_history_is_unknown() -> None:
     """Fast DDS does not announce history and depth."""
-    untold = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
-    assert profile_for_playing([from_library(to_library(untold))]) == QoSProfile(depth=10)
+    unknown_history = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
+    assert profile_for_playing([from_library(to_library(unknown_history))]) == QoSProfile(depth=10)
 
 
 def test_qos_overrides_are_parsed() -> None:

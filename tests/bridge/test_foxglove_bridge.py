@@ -115,11 +115,11 @@ async def test_new_client_receives_server_info_and_channels():
         for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
             async with setup.client((protocol,)) as client:
                 assert client.socket.protocol == protocol
-                hello = await client.next()
-                assert hello["op"] == "serverInfo"
-                assert hello["supportedEncodings"] == ["cdr"]
+                server_info = await client.next()
+                assert server_info["op"] == "serverInfo"
+                assert server_info["supportedEncodings"] == ["cdr"]
                 assert {"clientPublish", "parameters", "services", "connectionGraph", "assets"} <= set(
-                    hello["capabilities"]
+                    server_info["capabilities"]
                 )
                 chatter = await client.channel("/chatter")
                 assert chatter["encoding"] == "cdr"
@@ -312,9 +312,9 @@ async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path,
             "/etc/passwd",
             "http://example.com/a.stl",
         ):
-            failed, why = await fetched(client, request)
-            assert failed == 1, request
-            assert b"secret" not in why
+            status, reason = await fetched(client, request)
+            assert status == 1, request
+            assert b"secret" not in reason
 
 
 @pytest.mark.parametrize(

@@ -92,21 +92,21 @@ def pixels(page: Page) -> list[tuple[int, int, int]]:
     until(page, "lw.settled")
     box = page.locator(".canvas-box canvas").first.bounding_box()
     assert box is not None
-    spots = [
+    points = [
         (box["x"] + box["width"] * i / 60, box["y"] + box["height"] * j / 60)
         for i in range(1, 60)
         for j in range(9, 57)
     ]
-    return colors_at(page, *spots)
+    return colors_at(page, *points)
 
 
-def show(page: Page, title: str, *, on: bool) -> None:
+def show(page: Page, title: str, *, is_shown: bool) -> None:
     """Toggle a robot."""
     box = page.get_by_title(title, exact=False).get_by_role("checkbox")
     count = "lw.displays.filter((display) => display.class.endsWith('RobotModel') && display.enabled).length"
     count_before = page.evaluate(f"() => {{ const lw = window.linkwright; return {count}; }}")
-    box.set_checked(on)
-    until(page, f"{count} === {count_before + (1 if on else -1)}")
+    box.set_checked(is_shown)
+    until(page, f"{count} === {count_before + (1 if is_shown else -1)}")
 
 
 def test_identical_old_robot_is_hidden(start, open_page, files):
@@ -116,7 +116,7 @@ def test_identical_old_robot_is_hidden(start, open_page, files):
     page.get_by_text("are identical").wait_for()
     both_robots = pixels(page)
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both_robots) > 100, "the robot is visible"
-    show(page, "Show the old robot", on=False)
+    show(page, "Show the old robot", is_shown=False)
     new_only = pixels(page)
     assert [
         (pixel, pixel_alone) for pixel, pixel_alone in zip(both_robots, new_only, strict=True) if pixel != pixel_alone
@@ -127,7 +127,7 @@ def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_pag
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     both_robots = pixels(page)
-    show(page, "Show the new robot", on=False)
+    show(page, "Show the new robot", is_shown=False)
     old_only = pixels(page)
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
     assert old_only != both_robots
@@ -137,8 +137,8 @@ def test_robots_can_be_shown_alone_and_old_opacity_is_adjustable(start, open_pag
     assert sum(sum(pixel) for pixel in opaque) < sum(sum(pixel) for pixel in old_only), (
         "the gray of the old robot is darker than the ground behind it"
     )
-    show(page, "Show the new robot", on=True)
-    show(page, "Show the old robot", on=False)
+    show(page, "Show the new robot", is_shown=True)
+    show(page, "Show the old robot", is_shown=False)
     wait_until_equal(lambda: sum(b > 1.5 * r and b > 60 for r, g, b in pixels(page)) > 0, True)
 
 

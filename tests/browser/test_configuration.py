@@ -122,10 +122,10 @@ def test_theme_choice_is_remembered(grouped_displays):
     page.emulate_media(color_scheme="dark")
     page.wait_for_function("() => document.documentElement.dataset.theme === 'dark'")
     background = "getComputedStyle(document.body).backgroundColor"
-    dark = page.evaluate(background)
+    dark_background = page.evaluate(background)
     page.get_by_role("button", name="Colors").click()
     page.get_by_role("menuitemcheckbox", name="Light").click()
-    assert page.evaluate(background) != dark
+    assert page.evaluate(background) != dark_background
     page.reload()
     page.wait_for_selector("[data-key='display-4']")
     assert page.evaluate("document.documentElement.dataset.theme") == "light"

@@ -30,8 +30,8 @@ def open_panel(page, name):
     page.locator(".panel-tab", has_text=name).first.click()
 
 
-def marks(page, pane):
-    return [(mark["from"], mark["to"]) for mark in state(page, f"panels.source.{pane}.marks")]
+def marks(page, panel):
+    return [(mark["from"], mark["to"]) for mark in state(page, f"panels.source.{panel}.marks")]
 
 
 def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
@@ -120,32 +120,32 @@ def test_edited_link_flashes_and_finding_leads_to_source(page, arm):
         window.lit = new Set();
         setInterval(() => document.querySelectorAll(".link-row.flash").forEach((row) => lit.add(row.dataset.link)), 50);
     }""")
-    good = arm.read_text().replace('length="0.3" mass="1"', 'length="0.35" mass="1"')
-    arm.write_text(good)
+    valid_text = arm.read_text().replace('length="0.3" mass="1"', 'length="0.35" mass="1"')
+    arm.write_text(valid_text)
     until(page, f"lw.description.revision > {revision} && lw.description.edited.includes('fore')")
     assert state(page, "description.edited") == ["fore"]
     page.wait_for_function("window.lit.size > 0")
     page.locator(".link-row.flash").wait_for(state="detached")
     assert page.evaluate("[...window.lit]") == ["fore"]
 
-    arm.write_text(good.replace('mass="2"', 'mas="2"'))
+    arm.write_text(valid_text.replace('mass="2"', 'mas="2"'))
     page.locator(".panel-tab", has_text="Diagnostics (").click()
     page.locator(".diagnostic button.place").first.click()
     until(page, f"lw.panels.source.origin.file === {str(arm)!r}")
     problem = page.locator(".source-line.problem", has_text='mas="2"')
     problem.wait_for()
-    arm.write_text(good)
+    arm.write_text(valid_text)
     problem.wait_for(state="detached")
 
 
 def test_robot_broken_at_start_is_shown_without_tf_once_fixed(start, open_page, tmp_path):
     file = tmp_path / "robot.urdf.xacro"
-    good = Path(write_arm(tmp_path)).read_text()
-    file.write_text(good.replace("</robot>", "<link/></robot>"))
+    valid_text = Path(write_arm(tmp_path)).read_text()
+    file.write_text(valid_text.replace("</robot>", "<link/></robot>"))
     page = open_page(start("view", str(file)), wait=False)
     page.locator(".banner").wait_for()
     page.locator(".waiting").wait_for(state="hidden")  # only the banner shows the reason
-    file.write_text(good)
+    file.write_text(valid_text)
     until(page, "lw.robot?.visuals > 0 && lw.ready")
     page.locator(".banner").wait_for(state="hidden")
     displays = {display["class"].rpartition("/")[2]: display["enabled"] for display in state(page, "displays")}

@@ -133,12 +133,12 @@ def test_file_changed_meanwhile_is_not_overwritten(start, open_page, file):
     start_editing(page, "mast")
     type_in(page, "xyz2", "0.8")
     page.get_by_text('value="0.8"', exact=False).wait_for()
-    mine = ROBOT.replace('value="0.5"', 'value="0.7"')
-    file.write_text(mine)
+    external_text = ROBOT.replace('value="0.5"', 'value="0.7"')
+    file.write_text(external_text)
     until(page, "Math.abs(lw.frames.mast.position[2] - 0.7) < 1e-6")
     wait_until_equal(lambda: number(page, "xyz2").input_value(), "0.7")
     assert page.get_by_role("button", name="Write", exact=True).is_disabled()
-    assert file.read_text() == mine
+    assert file.read_text() == external_text
 
 
 def test_edit_diff_is_shown_beside_numbers(start, browser, file: Path) -> None:
@@ -201,8 +201,8 @@ def test_camera_moves_to_handles_that_are_out_of_view(start, open_page, file: Pa
     size = page.locator(".canvas-box canvas").bounding_box()
 
     def is_in_sight() -> bool:
-        tips = state(page, "panels.editing.handles").values()
-        return all(0 < tip["x"] < size["width"] and 0 < tip["y"] < size["height"] for tip in tips)
+        handle_positions = state(page, "panels.editing.handles").values()
+        return all(0 < tip["x"] < size["width"] and 0 < tip["y"] < size["height"] for tip in handle_positions)
 
     wait_until_equal(is_in_sight, True)
     assert state(page, "view.yaw") == yaw, "the direction of the view stays"

@@ -37,18 +37,18 @@ def open_file(browser):
 
     Any request or error of the page fails the test.
     """
-    contexts, wrong = [], []
+    contexts, errors = [], []
 
     def open_path(path: Path, locale: str = "en-US"):
         context = browser.new_context(viewport={"width": 1000, "height": 700}, locale=locale, offline=True)
         contexts.append(context)
         page = context.new_page()
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
 
         def on_request(request) -> None:
             if request.url != path.as_uri() and not request.url.startswith(("data:", "blob:")):
-                wrong.append(request.url)
+                errors.append(request.url)
 
         page.on("request", on_request)
         page.goto(path.as_uri())
@@ -59,7 +59,7 @@ def open_file(browser):
     yield open_path
     for context in contexts:
         context.close()
-    assert wrong == []
+    assert errors == []
 
 
 def export(target: Path, model: Path, *values: str) -> None:
@@ -227,14 +227,14 @@ def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
 
 
 def test_files_outside_package_are_listed_before_export(start, open_page, tmp_path):
-    share, elsewhere = tmp_path / "robot", tmp_path / "elsewhere"
+    share, other_folder = tmp_path / "robot", tmp_path / "elsewhere"
     share.mkdir()
-    elsewhere.mkdir()
+    other_folder.mkdir()
     (share / "package.xml").write_text("<package><name>robot</name></package>")
-    (elsewhere / "part.urdf").write_text('<robot><link name="base"/></robot>')
+    (other_folder / "part.urdf").write_text('<robot><link name="base"/></robot>')
     (share / "robot.xacro").write_text(
         f"""<robot name="robot" xmlns:xacro="http://www.ros.org/wiki/xacro">
-        <xacro:include filename="{elsewhere}/part.urdf"/></robot>"""
+        <xacro:include filename="{other_folder}/part.urdf"/></robot>"""
     )
     page = open_page(start("view", str(share / "robot.xacro")))
     assert save_from_menu(page, "Export glb…", tmp_path).name == "robot.glb"

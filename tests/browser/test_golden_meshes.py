@@ -48,19 +48,19 @@ def open_robot(live, open_page, links: str, names):
 
 def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
     page = open_robot(live, open_page, golden_links(tmp_path), GOLDEN)
-    wrong = {}
+    mismatches = {}
     for name, (_, _, _, _, (low, high), color, opacity) in GOLDEN.items():
         drawing = drawn_visual(page, name)
-        (look,) = drawing["materials"]
+        (material,) = drawing["materials"]
         bounds = drawing["bounds"]
         right = (
             bounds["min"] == pytest.approx(low, abs=1e-5)
             and bounds["max"] == pytest.approx(high, abs=1e-5)
-            and (look["color"], look["opacity"]) == (color, pytest.approx(opacity))
+            and (material["color"], material["opacity"]) == (color, pytest.approx(opacity))
         )
         if not right:
-            wrong[name] = drawing
-    assert wrong == {}
+            mismatches[name] = drawing
+    assert mismatches == {}
 
 
 def test_textures_are_drawn(live, open_page, tmp_path):
@@ -133,7 +133,7 @@ def alphas(*colors: str) -> str:
     boxes = []
     for name, color in zip(("near", "far"), colors, strict=True):
         r, g, b, a = (float(component) for component in color.split())
-        look = f"lw.displays[0].drawn.links?.{name}?.visuals[0]?.materials[0]"
+        material = f"lw.displays[0].drawn.links?.{name}?.visuals[0]?.materials[0]"
         code = "#" + "".join(f"{int(component * 255):02x}" for component in (r, g, b))
-        boxes.append(f"{look}?.color === '{code}' && {look}?.opacity === {a:g}")
+        boxes.append(f"{material}?.color === '{code}' && {material}?.opacity === {a:g}")
     return " && ".join(boxes)

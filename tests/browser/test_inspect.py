@@ -48,9 +48,9 @@ def test_masses_inertias_and_implausible_values_are_shown(page):
     # The center follows the joints.
     page.locator('[data-joint="fore_joint"] input[type=text]').fill("1.5707963")
     page.keyboard.press("Enter")
-    bent = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]
-    until(page, f"Math.abs(lw.invisibleProperties.totals[0][0] - {bent[0]}) < 1e-4")
-    assert state(page, "invisibleProperties.totals[0]") == pytest.approx(bent, abs=1e-4)
+    center_of_mass = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]
+    until(page, f"Math.abs(lw.invisibleProperties.totals[0][0] - {center_of_mass[0]}) < 1e-4")
+    assert state(page, "invisibleProperties.totals[0]") == pytest.approx(center_of_mass, abs=1e-4)
 
     until(page, "lw.description.findings.some(({ link, code }) => link === 'fore' && code.startsWith('LW3'))")
     assert "Mass of the robot: 7 kg" in page.locator(".inspect-facts").inner_text()

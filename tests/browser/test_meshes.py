@@ -55,10 +55,10 @@ def test_all_mesh_formats_are_drawn(start, open_page, robot):
 
 def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, robot, tmp_path):
     """Exporters write invalid XML: assimp names the nodes of an STL ``<STL_BINARY>``."""
-    proper = (tmp_path / "box.dae").read_text()
-    loose = proper.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
-    assert loose != proper
-    (tmp_path / "loose.dae").write_text(loose)
+    well_formed = (tmp_path / "box.dae").read_text()
+    malformed = well_formed.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
+    assert malformed != well_formed
+    (tmp_path / "loose.dae").write_text(malformed)
     page = open_page(start("view", robot(link("loose", f"file://{tmp_path}/loose.dae", 2))))
     wait_until_equal(lambda: rows(page).get("loose", ("", ""))[0], "ok")
 

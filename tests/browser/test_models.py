@@ -69,10 +69,10 @@ def test_view_fits_model_without_configuration(start, open_page, tmp_path, size)
 
 def test_grid_fits_single_mesh_model_unless_user_changed_it(start, open_page, tmp_path):
     trimesh.creation.box((100.0, 20.0, 15.0)).export(tmp_path / "hull.stl")
-    ship = tmp_path / "ship.urdf"
+    model_file = tmp_path / "ship.urdf"
     visual = f'<visual><geometry><mesh filename="file://{tmp_path}/hull.stl"/></geometry></visual>'
-    ship.write_text(f'<robot name="ship"><link name="hull">{visual}</link></robot>', encoding="utf-8")
-    program = start("view", str(ship))
+    model_file.write_text(f'<robot name="ship"><link name="hull">{visual}</link></robot>', encoding="utf-8")
+    program = start("view", str(model_file))
     page = open_page(program)
     cell = page.locator('[data-key="display-1/Cell Size"] input')
     page.locator('[data-key="display-1"] .twist').click()

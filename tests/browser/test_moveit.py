@@ -62,9 +62,9 @@ def kitchen(*, wrist: float = 0.2):
     octomap = kitchen_scene.world.octomap
     octomap.header.frame_id, octomap.origin = "base", pose(x=-1.0, y=-1.0)
     octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
-    inner, leaves = struct.pack("<H", 0xFFFF), struct.pack("<H", 0xAAAA)
+    inner_node, leaf_node = struct.pack("<H", 0xFFFF), struct.pack("<H", 0xAAAA)
     octree_data = struct.pack("<H", 3 << 14) + struct.pack("<H", 3) * 12
-    octomap.octomap.data = signed(octree_data + inner + (inner + leaves * 8) * 8)
+    octomap.octomap.data = signed(octree_data + inner_node + (inner_node + leaf_node * 8) * 8)
     return kitchen_scene
 
 

@@ -108,7 +108,7 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
     canvas = page.locator(".canvas-box canvas")
     middle = canvas.bounding_box()
     canvas.click(position={"x": middle["width"] / 2, "y": middle["height"] / 2})
-    card, fold = page.locator(".selection-card"), page.locator(".selection-card .fold")
+    card, fold_button = page.locator(".selection-card"), page.locator(".selection-card .fold")
     card.wait_for()
 
     def card_covers_robot() -> bool:
@@ -116,10 +116,10 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
         return state(page, "robotsRightEdge") > box["x"] - canvas.bounding_box()["x"]
 
     reaches = right_edge > middle["width"] - 10 - min(256, 0.55 * (middle["width"] - 20))
-    assert fold.get_attribute("aria-expanded") == ("false" if reaches else "true")
+    assert fold_button.get_attribute("aria-expanded") == ("false" if reaches else "true")
     if reaches:
         assert card.bounding_box()["height"] < 45
-        fold.click()
+        fold_button.click()
         wait_until_equal(lambda: state(page, "robotsRightEdge") < right_edge, True)
         fit.click()  # moving aside was not enough
     wait_until_equal(card_covers_robot, False)
@@ -137,10 +137,10 @@ def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
     page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
     until(page, "lw.settled")
     # The robot is in the middle of the canvas, so its margins on the left and right are equal.
-    reach, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
+    right_edge, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
     page.locator(".inspect > button").click()
     page.locator(".inspect-card").wait_for()
-    wait_until_equal(lambda: state(page, "robotsRightEdge"), pytest.approx(reach - (width - reach), abs=1))
+    wait_until_equal(lambda: state(page, "robotsRightEdge"), pytest.approx(right_edge - (width - right_edge), abs=1))
 
 
 TALL = """\

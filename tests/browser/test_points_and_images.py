@@ -72,8 +72,8 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
         set_property(viewer, 0, ("Style",), style)
         until(page, f"lw.displays[0].drawn.style === '{style}'")
         viewer.settle(page)
-        inner = 0.2 if style == "Spheres" else 0.26
-        points = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inner, 1.0), (0.27, 1.27)]
+        inner_distance = 0.2 if style == "Spheres" else 0.26
+        points = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inner_distance, 1.0), (0.27, 1.27)]
 
         def read_appearance(points: list[tuple[float, float]] = points) -> tuple[list[Color], bool, bool]:
             *colors, near_edge, corner = colors_from_above(page, *points)

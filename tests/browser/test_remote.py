@@ -77,12 +77,12 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     page = open_page(SlowAddress(viewer.run(line.__aenter__)), wait=False)
     until(page, "lw.displays.length === 2")
 
-    heavy = cloud(50_000), noise(1280, 720)
+    heavy_messages = cloud(50_000), noise(1280, 720)
     facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:
         """Publish both topics, because a silent topic's last message is sent whole; return whether both are thinned."""
-        for topic, message in zip(("/cloud", "/image"), heavy, strict=True):
+        for topic, message in zip(("/cloud", "/image"), heavy_messages, strict=True):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
         facts.update(
@@ -109,9 +109,9 @@ def test_fast_connection_shows_no_notice(live, open_page):
     viewer = live(SENSES)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.length === 2")
-    heavy = cloud(100_000)
+    heavy_messages = cloud(100_000)
     for _ in range(20):
-        viewer.publish("/cloud", heavy)
+        viewer.publish("/cloud", heavy_messages)
     until(page, "lw.displays[0].drawn?.points === 100000")
     until(page, "document.querySelector('.line-notice').hidden")
 
@@ -150,5 +150,5 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     page.wait_for_load_state("networkidle")
     context.close()
     assert len(urls) > 3
-    elsewhere = [url for url in urls if urlsplit(url).netloc != host and not url.startswith(("data:", "blob:"))]
-    assert elsewhere == []
+    foreign_urls = [url for url in urls if urlsplit(url).netloc != host and not url.startswith(("data:", "blob:"))]
+    assert foreign_urls == []

@@ -24,9 +24,9 @@ def test_scene_is_drawn_when_it_is_opened(browser, tmp_path):
     subprocess.run([sys.executable, "-m", "linkwright", "review", *arguments], check=True, capture_output=True)
     context = browser.new_context(viewport={"width": 1000, "height": 900}, offline=True)
     page = context.new_page()
-    wrong: list[str] = []
-    page.on("pageerror", lambda error: wrong.append(str(error)))
-    page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.goto(path.as_uri())
     assert page.locator("iframe").count() == 0
     page.click("details.scene summary")
@@ -37,4 +37,4 @@ def test_scene_is_drawn_when_it_is_opened(browser, tmp_path):
     page.click("details.scene summary")
     assert page.locator("iframe").count() == 1
     context.close()
-    assert wrong == []
+    assert errors == []

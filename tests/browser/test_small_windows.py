@@ -250,17 +250,17 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(open_win
     def names() -> list[str]:
         return [display["name"] for display in state(page, "displays")]
 
-    at = {"x": 60, "y": 8}
-    row("Axes").click(position=at)
-    row("TF").click(position=at, modifiers=["Shift"])
+    click_position = {"x": 60, "y": 8}
+    row("Axes").click(position=click_position)
+    row("TF").click(position=click_position, modifiers=["Shift"])
     assert selected() == ["Axes", "Front", "Back", "TF"]
-    row("Front").click(position=at, modifiers=["Control"])
-    row("Back").click(position=at, modifiers=["Control"])
+    row("Front").click(position=click_position, modifiers=["Control"])
+    row("Back").click(position=click_position, modifiers=["Control"])
     assert selected() == ["Axes", "TF"]
     page.keyboard.press("Alt+d")
     until(page, "lw.displays.length === 7")
     assert names() == ["Grid", "Axes", "Axes", "Front", "Back", "TF", "TF"]
-    row("Grid").click(position=at)
+    row("Grid").click(position=click_position)
     assert selected() == ["Grid"]
     page.keyboard.press("Shift+ArrowDown")
     assert selected() == ["Grid", "Axes"]

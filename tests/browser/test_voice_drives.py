@@ -121,16 +121,16 @@ def test_enrolled_words_drive_and_stop_mbot(
                 verdict.wait_for()
             row.locator(f".word-takes:text-is('{take}/3')").wait_for()
 
-    talk = page.locator(".voice-talk")
+    talk_button = page.locator(".voice-talk")
     x, y = position(page)
-    speak(page, talk, microphone, "forward", seed=7, speed=0.97)
+    speak(page, talk_button, microphone, "forward", seed=7, speed=0.97)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=forward")
     wait_until(
         lambda: math.hypot(position(page)[0] - x, position(page)[1] - y) > 0.2,
         what=lambda: position(page),
         pause=POLL_PERIOD,
     )
-    speak(page, talk, microphone, "stop", seed=8, speed=1.03)
+    speak(page, talk_button, microphone, "stop", seed=8, speed=1.03)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
     positions = [position(page)]
 

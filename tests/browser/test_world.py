@@ -187,9 +187,10 @@ def test_model_without_collision_is_reported_until_dismissed(live, open_page):
     viewer = publish_world(live)
     page = open_page(viewer)
     falls = phrase("no link of '{name}' has a <collision>, so the model has no contacts and falls", name="seen")
-    small = phrase("links without a mass")
+    light_links_text = phrase("links without a mass")
     findings = [
-        Diagnostic(code, text, severity=Severity.WARNING) for code, text in (("SDF172", small), ("SIM143", falls))
+        Diagnostic(code, text, severity=Severity.WARNING)
+        for code, text in (("SDF172", light_links_text), ("SIM143", falls))
     ]
     viewer.run(lambda: viewer.viewer.show_diagnostics(findings))
     banner = page.locator(".banner")

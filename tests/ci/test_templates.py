@@ -35,8 +35,8 @@ def test_action_files_have_valid_structure(path: Path) -> None:
         assert step.keys() <= _STEP_KEYS
         assert ("run" in step) != ("uses" in step)
         assert ("run" in step) == ("shell" in step)
-    used = set(re.findall(r"inputs\.([\w-]+)", path.read_text(encoding="utf-8")))
-    assert used == action["inputs"].keys()
+    used_inputs = set(re.findall(r"inputs\.([\w-]+)", path.read_text(encoding="utf-8")))
+    assert used_inputs == action["inputs"].keys()
 
 
 @pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.yml")), ids=lambda path: path.parent.name)

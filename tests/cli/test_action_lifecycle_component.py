@@ -159,8 +159,8 @@ def test_lifecycle_list_prints_transitions(in_graph, capsys):
         "\tStart: unconfigured",
         "\tGoal: shuttingdown",
     ]
-    everything = run(capsys, "lifecycle", "list", "-a", "camera")[0].splitlines()
-    assert len(everything) == 3 * 25
+    all_transitions = run(capsys, "lifecycle", "list", "-a", "camera")[0].splitlines()
+    assert len(all_transitions) == 3 * 25
 
 
 def test_lifecycle_set_changes_state(in_graph, capsys):

@@ -141,13 +141,21 @@ def test_completion_imports_no_slow_modules() -> None:
         f"complete(split_line({line!r})); print(*sorted(sys.modules), sep='\\n')"
     )
     loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
-    heavy = ("argparse", "asyncio", "linkwright.graph", "linkwright.launch", "linkwright.messages", "numpy", "yaml")
-    assert [name for name in heavy if name in loaded] == []
+    slow_modules = (
+        "argparse",
+        "asyncio",
+        "linkwright.graph",
+        "linkwright.launch",
+        "linkwright.messages",
+        "numpy",
+        "yaml",
+    )
+    assert [name for name in slow_modules if name in loaded] == []
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 @pytest.mark.parametrize(
-    ("line", "offered"),
+    ("line", "candidates"),
     [
         ("linkwright lau", ["launch"]),
         ("linkwright launch arm a.launch.py s", ["speed:="]),
@@ -155,14 +163,14 @@ def test_completion_imports_no_slow_modules() -> None:
         ("linkwright 'open quote", []),
     ],
 )
-def test_completion_in_bash(line: str, offered: list[str]) -> None:
+def test_completion_in_bash(line: str, candidates: list[str]) -> None:
     program = (
         script("bash", sys.executable, ["linkwright"])
         + f'COMP_LINE="{line}"; COMP_POINT=${{#COMP_LINE}}; _linkwright_complete 2>/dev/null\n'
         + "printf '%s\\n' \"${COMPREPLY[@]}\"; complete -p linkwright >&2"
     )
     result = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=True)
-    assert result.stdout.split() == offered
+    assert result.stdout.split() == candidates
     assert "_linkwright_complete" in result.stderr
 
 
@@ -177,9 +185,9 @@ SHELL_LINES = [
 """The words that shells pass, the one at the cursor last, and the expected candidates."""
 
 
-@pytest.mark.parametrize(("words", "offered"), SHELL_LINES)
-def test_completion_of_words_from_any_shell(words: list[str], offered: list[str]) -> None:
-    assert complete(words) == offered
+@pytest.mark.parametrize(("words", "candidates"), SHELL_LINES)
+def test_completion_of_words_from_any_shell(words: list[str], candidates: list[str]) -> None:
+    assert complete(words) == candidates
 
 
 @pytest.mark.parametrize("quote", ["'", '"'])
@@ -197,8 +205,8 @@ _files() { print -r -- FILES }
 
 
 @pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed")
-@pytest.mark.parametrize(("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
-def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
+@pytest.mark.parametrize(("words", "candidates"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
+def test_completion_in_zsh(words: list[str], candidates: list[str]) -> None:
     typed = " ".join(f"'{word}'" for word in [*words[:-1], words[-1] + "after-the-cursor"])
     program = (
         ZSH_WITHOUT_ITS_COMPLETION
@@ -207,21 +215,21 @@ def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
         + f"PREFIX={shlex.quote(words[-1])}; _linkwright_complete"
     )
     result = subprocess.run(["zsh", "-f", "-c", program], capture_output=True, text=True, check=False)
-    assert result.stdout.split() == offered
+    assert result.stdout.split() == candidates
     assert "compdef _linkwright_complete linkwright" in result.stderr
 
 
 @pytest.mark.skipif(shutil.which("fish") is None, reason="fish is not installed")
 @pytest.mark.parametrize(
-    ("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
+    ("words", "candidates"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
 )
-def test_completion_in_fish(words: list[str], offered: list[str], tmp_path: Path) -> None:
+def test_completion_in_fish(words: list[str], candidates: list[str], tmp_path: Path) -> None:
     program = script("fish", sys.executable, ["linkwright"]) + f"complete -C {shlex.quote(' '.join(words))}"
     environment = {**os.environ, "HOME": str(tmp_path)}
     result = subprocess.run(
         ["fish", "--no-config", "-c", program], capture_output=True, text=True, check=True, env=environment
     )
-    assert sorted(line.partition("\t")[0] for line in result.stdout.splitlines()) == sorted(offered)
+    assert sorted(line.partition("\t")[0] for line in result.stdout.splitlines()) == sorted(candidates)
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -230,8 +238,8 @@ def test_shell_accepts_generated_script(shell: str, capsys: pytest.CaptureFixtur
     text = capsys.readouterr().out
     assert text == script(shell, sys.executable, ["linkwright"])
     if shutil.which(shell):
-        whole = shell_script(shell, sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "rqt"])
-        subprocess.run([shell, "-n"], input=text + whole, text=True, check=True)
+        generated = shell_script(shell, sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "rqt"])
+        subprocess.run([shell, "-n"], input=text + generated, text=True, check=True)
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")

@@ -54,9 +54,13 @@ def git(folder: Path, *words: str) -> None:
     identity = {
         f"GIT_{role}_{field}": "test@example.org" for role in ("AUTHOR", "COMMITTER") for field in ("NAME", "EMAIL")
     }
-    nobody = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
+    without_user_config = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
     subprocess.run(
-        ["git", *words], cwd=folder, env={**environment, **identity, **nobody}, check=True, capture_output=True
+        ["git", *words],
+        cwd=folder,
+        env={**environment, **identity, **without_user_config},
+        check=True,
+        capture_output=True,
     )
 
 

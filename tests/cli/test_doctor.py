@@ -152,8 +152,8 @@ def test_twist_type_qos_and_unserved_client_problems_are_reported(in_graph, caps
     in_graph(make)
     output = doctor(capsys, status=1)
     assert "topic '/cmd_vel' carries Twist for some nodes and TwistStamped for others" in output
-    apart = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in output
-    assert apart is dds.is_available()  # over Zenoh, reliability does not prevent a connection
+    reports_mismatch = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in output
+    assert reports_mismatch is dds.is_available()  # over Zenoh, reliability does not prevent a connection
     assert "no node provides service '/reset', which '/base' calls" in output
 
 

@@ -22,10 +22,10 @@ def rooms() -> tuple[set[str], set[str]]:
 
 
 def test_every_package_is_in_engine_or_excluded() -> None:
-    engine, others = rooms()
+    engine, other_rooms = rooms()
     package = REPOSITORY / "src" / "linkwright"
     found_rooms = {f"linkwright.{folder.parent.name}" for folder in package.glob("*/__init__.py")} - {"linkwright.cli"}
-    assert found_rooms == {name for name in engine | others if not name.startswith("linkwright.cli.")}
+    assert found_rooms == {name for name in engine | other_rooms if not name.startswith("linkwright.cli.")}
 
 
 def test_linkwright_requires_same_version_of_linkwright_core() -> None:

@@ -282,7 +282,7 @@ def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: s
 def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = tmp_path / "r.urdf"
     robot.write_text(ROBOT)
-    here = Path.cwd()
+    working_directory = Path.cwd()
     for words in (
         ["check", str(robot)],
         ["check", "."],
@@ -294,10 +294,10 @@ def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytes
         ["pkg", "create", "some_robot"],
         ["launch", "a.launch.py", "--print"],
     ):
-        gone = tmp_path / "gone"
-        gone.mkdir()
-        os.chdir(gone)
-        shutil.rmtree(gone)
+        removed = tmp_path / "gone"
+        removed.mkdir()
+        os.chdir(removed)
+        shutil.rmtree(removed)
         try:
             result = subprocess.run(
                 [sys.executable, "-m", "linkwright", *words],
@@ -308,7 +308,7 @@ def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytes
                 check=False,
             )
         finally:
-            os.chdir(here)
+            os.chdir(working_directory)
         assert "bug in Linkwright" not in result.stderr, words
         assert result.returncode in (0, 1), (words, result.stderr)
         assert result.returncode == 0 or "error[" in result.stderr, words

@@ -52,9 +52,9 @@ def launched(*words: object) -> subprocess.CompletedProcess[str]:
 
 def test_process_output_goes_to_log_by_default(write: Write, tmp_path: Path) -> None:
     path = write(PRINTS)
-    quiet = launched(path)
-    assert quiet.returncode == 0
-    assert quiet.stdout == ""
+    output_by_default = launched(path)
+    assert output_by_default.returncode == 0
+    assert output_by_default.stdout == ""
     assert "[py-1] out" in (tmp_path / "logs" / "latest" / "launch.log").read_text()
     assert launched("-a", path).stdout == "[py-1] out\n"
 

@@ -19,7 +19,7 @@ MODEL = """\
 ARM = urdf(
     link("base", '<box size="1 1 1"/>', RED),
     link("arm", '<box size="1 1 1"/>', RED, "0 0 2"),
-    joint("turn", "base", "arm", "continuous", rest='<axis xyz="1 0 0"/>'),
+    joint("turn", "base", "arm", "continuous", content='<axis xyz="1 0 0"/>'),
 )
 WORLD = """\
 <sdf version="1.9"><world name="w">

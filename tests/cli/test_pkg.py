@@ -339,8 +339,8 @@ def test_invalid_usage_is_rejected(words: list[str], capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize("options", [(), ("--symlink-install",)], ids=["copied", "symlinked"])
 def test_colcon_builds_created_package(options: tuple[str, ...], tmp_path: Path) -> None:
     words = ["my_robot", "--build-type", "ament_python", "--dependencies", "urdf", "xacro", "--license", "MIT"]
-    more = ["--node-name", "hello", "--destination-directory", "src"]
-    assert main(["pkg", "create", *words, *more, *ADA]) == 0
+    destination = ["--node-name", "hello", "--destination-directory", "src"]
+    assert main(["pkg", "create", *words, *destination, *ADA]) == 0
     colcon_build(tmp_path, "my_robot", *options)
     prefix = tmp_path / "install" / "my_robot"
     assert sourced(tmp_path, "AMENT_PREFIX_PATH") == str(prefix)

@@ -86,17 +86,17 @@ def test_dependent_package_provides_values(workspace: Path) -> None:
 
 
 def test_including_launch_file_provides_arguments(workspace: Path) -> None:
-    inner = launch_file("default_value='a_'")
+    included = launch_file("default_value='a_'")
     (workspace / "arm/launch").mkdir()
-    (workspace / "arm/launch/inner.launch.py").write_text(inner)
-    outer = f"""{HEAD}
+    (workspace / "arm/launch/inner.launch.py").write_text(included)
+    including = f"""{HEAD}
 def generate_launch_description():
     return LaunchDescription([IncludeLaunchDescription(
         PathJoinSubstitution([FindPackageShare('arm'), 'launch', 'inner.launch.py']),
         launch_arguments={{'prefix': 'outer_'}}.items(),
     )])
 """
-    prefixes = values(sets(workspace, "user/launch/outer.launch.py", outer))
+    prefixes = values(sets(workspace, "user/launch/outer.launch.py", including))
     assert [arguments["prefix"] for arguments in prefixes] == ["a_", "outer_"]
 
 
@@ -224,16 +224,16 @@ def test_xml_and_yaml_launch_files_provide_values(workspace: Path, name: str, te
 
 
 @pytest.mark.parametrize(
-    ("default", "known", "is_open"),
+    ("default", "environment", "is_open"),
     [("$(optenv EXTRAS)", {}, ("prefix",)), ("$(optenv EXTRAS none.urdf)", {"prefix": "none.urdf"}, ())],
 )
 def test_environment_variable_uses_written_default(
-    workspace: Path, default: str, known: dict[str, str], is_open: tuple[str, ...]
+    workspace: Path, default: str, environment: dict[str, str], is_open: tuple[str, ...]
 ) -> None:
     text = f"""<launch><arg name="prefix" default="{default}"/><param name="robot_description"
         command="$(find xacro)/xacro '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/></launch>"""
     (argument_set,) = sets(workspace, "arm/launch/view.launch", text)
-    assert (argument_set.values, argument_set.runtime_names) == (known, is_open)
+    assert (argument_set.values, argument_set.runtime_names) == (environment, is_open)
 
 
 def test_share_folder_inside_path_is_uncertain(workspace: Path) -> None:
@@ -413,13 +413,15 @@ def setup(context):
 
 
 def test_repeatedly_combined_names_are_evaluated_once(workspace: Path) -> None:
-    again = "\n".join(f"    a{i} = a{i} or ask(a{i})\n    a{i} = str(a{i - 1}) + str(a{i - 1})" for i in range(1, 28))
+    assignments = "\n".join(
+        f"    a{i} = a{i} or ask(a{i})\n    a{i} = str(a{i - 1}) + str(a{i - 1})" for i in range(1, 28)
+    )
     text = f"""
 import xacro
 from ament_index_python.packages import get_package_share_path
 
 def setup(a0):
-{again}
+{assignments}
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': 'a', 'name': a27}})
 """
     argument_sets = sets(workspace, "arm/launch/again.launch.py", text)

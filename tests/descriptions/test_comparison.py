@@ -100,10 +100,10 @@ def test_change_is_reported_with_old_and_new_value(written, instead, expected):
 
 
 def test_block_in_only_one_robot_is_one_difference():
-    without = ROBOT.replace('<limit lower="-1" upper="1" effort="10" velocity="2"/>', "").replace(
+    robot_without_limit = ROBOT.replace('<limit lower="-1" upper="1" effort="10" velocity="2"/>', "").replace(
         "revolute", "continuous"
     )
-    differences = {difference[3]: difference for difference in differences_between(ROBOT, without)}
+    differences = {difference[3]: difference for difference in differences_between(ROBOT, robot_without_limit)}
     assert sorted(differences) == ["limit", "type"]
     assert differences["limit"][4:] == ("lower -1 rad, upper 1 rad, effort 10 N m, velocity 2 rad/s", None)
 

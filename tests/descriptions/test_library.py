@@ -63,9 +63,9 @@ class TestTinyxmlTolerance:
         diagnostic = examine('\n<?xml version="1.0"?>\n<robot name="r"/>').diagnostics[0]
         assert (diagnostic.span.line, diagnostic.span.column) == (3, 1)
 
-    @pytest.mark.parametrize("rest", ["<robot/>", "\n<more>\n</more>", "\nwords"])
-    def test_text_after_root_is_ignored(self, rest):
-        assert load(GOOD + rest).name == "r"
+    @pytest.mark.parametrize("trailing_text", ["<robot/>", "\n<more>\n</more>", "\nwords"])
+    def test_text_after_root_is_ignored(self, trailing_text):
+        assert load(GOOD + trailing_text).name == "r"
 
     def test_text_after_root_must_be_well_formed(self):
         with pytest.raises(LinkwrightError):

@@ -18,10 +18,10 @@ from linkwright.diagnostics import (
 )
 
 
-def excerpt_of(text: str, marked: str, **more) -> list[str]:
+def excerpt_of(text: str, marked: str, **arguments) -> list[str]:
     source = SourceText("<test>", text)
     start = text.index(marked)
-    diagnostic = Diagnostic("URDF121", "message", source.span(start, start + len(marked)), source=source, **more)
+    diagnostic = Diagnostic("URDF121", "message", source.span(start, start + len(marked)), source=source, **arguments)
     return render(diagnostic).splitlines()
 
 

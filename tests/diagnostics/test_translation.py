@@ -55,10 +55,10 @@ def test_environment_variables_choose_chinese(name: str, monkeypatch: pytest.Mon
     assert language() == "zh"
 
 
-@pytest.mark.parametrize("stronger", range(3))
-def test_environment_variable_of_higher_priority_wins(stronger: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(VARIABLES[stronger], "en_US.UTF-8")
-    for name in VARIABLES[stronger + 1 :]:
+@pytest.mark.parametrize("preferred_variable", range(3))
+def test_environment_variable_of_higher_priority_wins(preferred_variable: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLES[preferred_variable], "en_US.UTF-8")
+    for name in VARIABLES[preferred_variable + 1 :]:
         monkeypatch.setenv(name, "zh_CN.UTF-8")
     assert language() == "en"
 
@@ -99,8 +99,8 @@ def test_unknown_language_is_rejected() -> None:
 # diagnostics
 
 
-def in_chinese(message: Phrase, **more: object) -> Diagnostic:
-    return translate(Diagnostic("XAC401", message, **more), "zh")  # type: ignore[arg-type]
+def in_chinese(message: Phrase, **arguments: object) -> Diagnostic:
+    return translate(Diagnostic("XAC401", message, **arguments), "zh")  # type: ignore[arg-type]
 
 
 def test_message_notes_and_hint_are_translated() -> None:
@@ -179,8 +179,8 @@ def test_chinese_catalog_uses_chinese_punctuation() -> None:
 
 def finding() -> Diagnostic:
     source = SourceText("a.xacro", '<link name="车轮_${prefx}"/>')
-    at = source.text.index("prefx")
-    span = source.span(at, at + 5)
+    offset = source.text.index("prefx")
+    span = source.span(offset, offset + 5)
     message = phrase("the property '{name}' is not defined", name="prefx")
     return Diagnostic(
         "XAC201",

@@ -105,9 +105,9 @@ def test_catalog_problems_are_reported(tmp_path: Path) -> None:
     assert [message.id for message in new if message.id] == [
         "'{tag}' is odd", "a new one", "{a} is {b}", ("{count} link", "{count} links")
     ]  # fmt: skip
-    once = tool.as_text(new)
-    (tmp_path / "zh.po").write_text(once, encoding="utf-8")
-    assert tool.as_text(tool.updated(tool.read(tmp_path / "zh.po"), source)) == once
+    catalog_text = tool.as_text(new)
+    (tmp_path / "zh.po").write_text(catalog_text, encoding="utf-8")
+    assert tool.as_text(tool.updated(tool.read(tmp_path / "zh.po"), source)) == catalog_text
 
 
 def test_untranslated_page_title_is_reported(tmp_path: Path) -> None:

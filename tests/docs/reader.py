@@ -251,12 +251,12 @@ class Reader:
 
     def _check(self, terminal: Terminal) -> None:
         outcome = self._outcomes.get(terminal.line, Outcome())
-        bad = [line for line in terminal.output.splitlines() if _BAD.search(line)]
+        error_lines = [line for line in terminal.output.splitlines() if _BAD.search(line)]
         if outcome.error:
-            assert all(outcome.error in line for line in bad)
-            assert bad, f"{terminal.line!r} did not print {outcome.error!r}:\n{terminal.output}"
+            assert all(outcome.error in line for line in error_lines)
+            assert error_lines, f"{terminal.line!r} did not print {outcome.error!r}:\n{terminal.output}"
         else:
-            assert outcome.may_fail or not bad, f"{terminal.line!r}:\n{terminal.output}"
+            assert outcome.may_fail or not error_lines, f"{terminal.line!r}:\n{terminal.output}"
 
 
 def write(block: Block, folder: Path) -> None:

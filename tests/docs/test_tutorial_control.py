@@ -93,8 +93,8 @@ def test_stop_ahead_node_stops_before_block(load: Any) -> None:
         load("stop_ahead").StopAhead()
         scans = test.record("/scan")
         test.advance(20.0)
-        ahead = [distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) < 30]
-        assert 0.4 < min(ahead) <= 0.62
+        distances_ahead = [distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) < 30]
+        assert 0.4 < min(distances_ahead) <= 0.62
 
 
 def test_check_of_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:

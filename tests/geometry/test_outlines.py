@@ -42,13 +42,13 @@ def obj(points, polygons):
 def assert_same(data, kind, folder):
     path = folder / f"mesh.{kind}"
     path.write_bytes(data)
-    small, whole = read_small(data, kind), read_mesh(path)
-    assert small is not None
+    outline, mesh = read_small(data, kind), read_mesh(path)
+    assert outline is not None
     for scale in SCALES:
-        mine, theirs = small.scaled(scale), whole.scaled(scale)
-        assert mine.count == theirs.count
-        assert mine.bounds == theirs.bounds
-        assert mine.is_watertight == theirs.is_watertight
+        actual, expected = outline.scaled(scale), mesh.scaled(scale)
+        assert actual.count == expected.count
+        assert actual.bounds == expected.bounds
+        assert actual.is_watertight == expected.is_watertight
 
 
 @given(st.lists(st.tuples(points, points, points), min_size=1, max_size=6))

@@ -90,11 +90,11 @@ def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
     data = text.encode()
     assert np.allclose(corners(data, "dae", is_plain=True), corners(data, "dae", is_plain=False), atol=2e-5)
     (tmp_path / "mesh.dae").write_bytes(data)
-    small, whole = read_small(data, "dae"), read_mesh(tmp_path / "mesh.dae")
-    assert small is not None
-    assert small.count == whole.count
-    assert small.is_watertight == whole.is_watertight
-    assert np.allclose(small.bounds, whole.bounds, rtol=0, atol=1e-15)
+    plain_mesh, mesh = read_small(data, "dae"), read_mesh(tmp_path / "mesh.dae")
+    assert plain_mesh is not None
+    assert plain_mesh.count == mesh.count
+    assert plain_mesh.is_watertight == mesh.is_watertight
+    assert np.allclose(plain_mesh.bounds, mesh.bounds, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -149,9 +149,9 @@ def test_mirrored_solid_is_watertight_without_arrays() -> None:
     solid = COLLADA.replace('count="9"', 'count="12"').replace("0 0 0 1 0 0 0 1 0", "0 0 0 1 0 0 0 1 0 0 0 1")
     solid = solid.replace('count="3" stride', 'count="4" stride').replace("<p>0 1 2", "<p>0 2 1 0 1 3 0 3 2 1 2 3")
     for text in (solid, solid.replace(NODE, f"<node><scale>1 -1 1</scale>{NODE}</node>")):
-        small = read_small(text.encode(), "dae")
-        assert small is not None
-        assert small.is_watertight
+        plain_mesh = read_small(text.encode(), "dae")
+        assert plain_mesh is not None
+        assert plain_mesh.is_watertight
     cut = read_small(solid.replace("0 2 1 0 1 3", "0 1 3").encode(), "dae")
     assert cut is not None
     assert not cut.is_watertight

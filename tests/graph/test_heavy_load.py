@@ -28,9 +28,9 @@ async def test_five_hundred_nodes_exchange_messages():
         node.create_subscription(String, "ours", on_message, 10)
         publisher = node.create_publisher(String, "ours", 10)
         node.create_timer(1.0, lambda publisher=publisher: publisher.publish(String()))
-    everybody = graph.create_node("everybody").create_publisher(String, "/all", 10)
+    broadcaster = graph.create_node("everybody").create_publisher(String, "/all", 10)
     assert len(graph.node_names()) == NODES + 1
-    everybody.publish(String())
+    broadcaster.publish(String())
     await graph.settle()
     assert counts == [1] * NODES
     await clock.advance(1.0)

@@ -160,11 +160,11 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("why", REFUSED, ids=["macro", "shape", "inertial", "part"])
-def test_link_generated_by_xacro_is_refused(write, why):
-    before = f"{XACRO}{REFUSED[why]}</robot>"
+@pytest.mark.parametrize("reason", REFUSED, ids=["macro", "shape", "inertial", "part"])
+def test_link_generated_by_xacro_is_refused(write, reason):
+    before = f"{XACRO}{REFUSED[reason]}</robot>"
     result, text = write(before, name="r.xacro")
-    assert result.refusals == {"a": why}
+    assert result.refusals == {"a": reason}
     assert result.links == ()
     assert text == before
 

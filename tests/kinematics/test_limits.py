@@ -19,16 +19,16 @@ def limited_speeds(limiter: SpeedLimiter, targets: list[float]) -> list[float]:
 
 
 @given(WANTED)
-def test_speed_and_acceleration_stay_within_limits(wanted):
-    speeds = [0.0, *limited_speeds(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), wanted)]
+def test_speed_and_acceleration_stay_within_limits(commands):
+    speeds = [0.0, *limited_speeds(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), commands)]
     assert all(-1.0 <= speed <= 2.0 for speed in speeds)
     changes = [(after - before) / STEP for before, after in pairwise(speeds)]
     assert all(-4.0 - 1e-9 <= change <= 3.0 + 1e-9 for change in changes)
 
 
 @given(WANTED)
-def test_jerk_stays_within_limits(wanted):
-    speeds = [0.0, 0.0, *limited_speeds(SpeedLimiter(jerk=(-50.0, 40.0)), wanted)]
+def test_jerk_stays_within_limits(commands):
+    speeds = [0.0, 0.0, *limited_speeds(SpeedLimiter(jerk=(-50.0, 40.0)), commands)]
     changes = [(after - before) / STEP for before, after in pairwise(speeds)]
     jerks = [(after - before) / STEP for before, after in pairwise(changes)]
     assert all(-50.0 - 1e-6 <= jerk <= 40.0 + 1e-6 for jerk in jerks)

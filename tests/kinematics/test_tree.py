@@ -167,13 +167,13 @@ class TestMimic:
         robot = load(robot_text(chain('continuous:<mimic joint="j1"/>', 'continuous:<mimic joint="j0"/>')))
         assert KinematicTree(robot).joint_names == ("j0", "j1")
 
-    @pytest.mark.parametrize("others", [(), ("continuous",)])
-    def test_mimic_of_fixed_joint_stays_at_offset(self, others):
+    @pytest.mark.parametrize("other_joints", [(), ("continuous",)])
+    def test_mimic_of_fixed_joint_stays_at_offset(self, other_joints):
         follower = 'continuous:<axis xyz="0 0 1"/><mimic joint="j0" multiplier="3" offset="0.5"/>'
-        robot = load(robot_text(chain("fixed", follower, *others)))
+        robot = load(robot_text(chain("fixed", follower, *other_joints)))
         tree = KinematicTree(robot)
-        assert len(tree.joint_names) == len(others)
-        for frames in (tree.forward([7.0] * len(others)), tree.forward(np.full((2, len(others)), 7.0))[1]):
+        assert len(tree.joint_names) == len(other_joints)
+        for frames in (tree.forward([7.0] * len(other_joints)), tree.forward(np.full((2, len(other_joints)), 7.0))[1]):
             np.testing.assert_allclose(np.arccos(frames[2, 0, 0]), 0.5)
 
 
@@ -213,6 +213,6 @@ def test_deep_chain_is_supported():
     )
     tree = KinematicTree(load(robot_text(links, joints)))
     circle = np.full(count, 2 * pi / count)
-    tips = [tree.forward(circle)[-1], tree.forward(circle[None])[0, -1]]
-    for tip in tips:
+    tip_frames = [tree.forward(circle)[-1], tree.forward(circle[None])[0, -1]]
+    for tip in tip_frames:
         np.testing.assert_allclose(tip, np.eye(4), atol=1e-9)

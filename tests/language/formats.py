@@ -94,7 +94,9 @@ class Place:
     def targets(self) -> list[str]:
         """Return the definitions, each as the name of the file and the text at the location."""
         targets = self.format.define(self.document, self.offset)
-        return [f"{to.file.name}:{self.document.other(to.file)[to.start : to.end]}" for to in targets]
+        return [
+            f"{target.file.name}:{self.document.other(target.file)[target.start : target.end]}" for target in targets
+        ]
 
     def links(self) -> list[str]:
         """Return the names of the files that the text refers to."""

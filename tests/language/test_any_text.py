@@ -152,10 +152,10 @@ MARKS = st.text("<>/=\"' ${}()[],.:#\\n\n机a-@", max_size=8)
 
 @given(st.data())
 def test_requests_survive_any_incomplete_text_of_own_formats(data):
-    name, whole = data.draw(st.sampled_from(OWN))
-    start, length = data.draw(st.integers(0, len(whole))), data.draw(st.integers(0, 60))
+    name, complete_text = data.draw(st.sampled_from(OWN))
+    start, length = data.draw(st.integers(0, len(complete_text))), data.draw(st.integers(0, 60))
     typed = data.draw(MARKS)
-    text = whole[:start] + typed + whole[start + length :]
+    text = complete_text[:start] + typed + complete_text[start + length :]
     offset = start + len(typed)
     file = Path(__file__).parents[2] / "robots/my_robot_description" / name
     document = Document(WORKSPACE, {file: text}, file, text)

@@ -19,13 +19,15 @@ NUMBERS = st.sampled_from(["1", "2.5", "-3", "0.1"])
 SIGNS = st.sampled_from([" + ", " - ", "*", " / ", " ** ", " &lt; ", " and ", " or ", " == "])
 
 
-def combined(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+def combined(inner_expressions: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     return st.one_of(
-        st.tuples(inner, SIGNS, inner).map("".join),
-        inner.map(lambda text: f"({text})"),
-        inner.map(lambda text: f"-{text}"),
-        inner.map(lambda text: f"abs({text})"),
-        st.tuples(inner, inner, inner).map(lambda texts: f"{texts[0]} if {texts[1]} else {texts[2]}"),
+        st.tuples(inner_expressions, SIGNS, inner_expressions).map("".join),
+        inner_expressions.map(lambda text: f"({text})"),
+        inner_expressions.map(lambda text: f"-{text}"),
+        inner_expressions.map(lambda text: f"abs({text})"),
+        st.tuples(inner_expressions, inner_expressions, inner_expressions).map(
+            lambda texts: f"{texts[0]} if {texts[1]} else {texts[2]}"
+        ),
     )
 
 

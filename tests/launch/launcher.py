@@ -74,9 +74,9 @@ class Running:
 
     def end(self, number: int = signal.SIGINT) -> tuple[int, float]:
         """Send a signal, and return the exit status and the time in seconds until the end."""
-        began = time.monotonic()
+        start_s = time.monotonic()
         self.process.send_signal(number)
-        return self.process.wait(SECONDS), time.monotonic() - began
+        return self.process.wait(SECONDS), time.monotonic() - start_s
 
     @property
     def url(self) -> str:

@@ -341,11 +341,11 @@ class TestPrograms:
         assert result.messages[0].endswith("/ros2")
 
     def test_ros_variables_are_set_unless_sourced(self) -> None:
-        bare, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
-        set_ros_variables(bare)
+        unsourced, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
+        set_ros_variables(unsourced)
         set_ros_variables(sourced)
         of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-        assert bare == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}
+        assert unsourced == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}
         assert sourced == {"ROS_DISTRO": "jazzy"}
         models = {"GZ_SIM_RESOURCE_PATH": "/models"}
         set_ros_variables(models)

@@ -316,8 +316,8 @@ class TestNavigationSubstitutions:
                 "new": {"ros__parameters": {"deep": {"x": "text"}}},
             }
         }
-        plain = RewrittenYaml(source, {"v": "7"}).perform(context)
-        assert yaml.safe_load(Path(plain).read_text())["ctl"]["ros__parameters"]["list"] == [{"v": "7"}]
+        rewritten = RewrittenYaml(source, {"v": "7"}).perform(context)
+        assert yaml.safe_load(Path(rewritten).read_text())["ctl"]["ros__parameters"]["list"] == [{"v": "7"}]
 
     def test_rewritten_yaml_of_missing_file_is_rejected(self) -> None:
         with pytest.raises(LinkwrightError) as raised:

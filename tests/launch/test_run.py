@@ -187,12 +187,12 @@ class TestBadInput:
         assert "LW_X" not in os.environ
 
     @pytest.mark.parametrize(
-        "inner", ["DeclareLaunchArgument('model')", "IncludeLaunchDescription(LaunchConfiguration('x'))"]
+        "inner_file", ["DeclareLaunchArgument('model')", "IncludeLaunchDescription(LaunchConfiguration('x'))"]
     )
     def test_argument_of_included_file_is_not_reported_as_undeclared(
-        self, write: Write, capsys: pytest.CaptureFixture[str], inner: str
+        self, write: Write, capsys: pytest.CaptureFixture[str], inner_file: str
     ) -> None:
-        included = write("inner.launch.py", launch_file(inner))
+        included = write("inner.launch.py", launch_file(inner_file))
         include_options = "launch_arguments={'model': 'm'}.items(), condition=UnlessCondition('true')"
         path = write(
             "a.launch.py",

@@ -299,13 +299,13 @@ def test_checks_have_separate_domain_folder_environment_and_seed(tmp_path, capsy
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected_text"),
     [
         ("x: 1\n", "robot.yaml, line 1, column 4: "),
         ("a:\n\tx: 1\n", "robot.yaml, line 2, column 1: "),
     ],
 )
-def test_finding_in_file_has_location_code_and_hint(tmp_path, capsys, text, said):
+def test_finding_in_file_has_location_code_and_hint(tmp_path, capsys, text, expected_text):
     folder = tmp_path / "mine"
     learn(capsys, "new", str(folder))
     (folder / "01-one-link" / "checks.py").write_text(
@@ -319,7 +319,7 @@ def test_finding_in_file_has_location_code_and_hint(tmp_path, capsys, text, said
         read_parameter_file(tmp_path / "robot.yaml")
     finding = raised.value.diagnostics[0]
     message = str(result.message)
-    assert message.startswith(said)
+    assert message.startswith(expected_text)
     assert f"{finding.message} [{finding.code}]" in message
     assert finding.hint is None or message.endswith(f"; {finding.hint}")
     assert re.match(r"robot\.yaml 第 \d+ 行第 \d+ 列：", result.message.get("zh"))

@@ -264,10 +264,10 @@ def test_localization_progress_grows_with_better_estimate(monkeypatch):
     judge = create_judge(find_exercise("localize"), 0)
     monkeypatch.setattr(judge, "pose", lambda: (1.0, 1.0, 0.0))
     judge.start()
-    seen = []
+    progress_values = []
     for x in (None, 3.0, 1.5, 1.0):
         if x is not None:
             judge.on_message("/estimate", SimpleNamespace(pose=SimpleNamespace(position=SimpleNamespace(x=x, y=1.0))))
         judge.update()
-        seen.append((judge.figure, round(judge.progress, 3)))
-    assert seen == [(3.0, 0.0), (2.0, 0.333), (0.5, 0.833), (0.0, 1.0)]
+        progress_values.append((judge.figure, round(judge.progress, 3)))
+    assert progress_values == [(3.0, 0.0), (2.0, 0.333), (0.5, 0.833), (0.0, 1.0)]

@@ -52,8 +52,8 @@ class Case:
             (folder / name).write_text(text, encoding="utf-8")
         main = folder / next(iter(self.files))
         findings = examine(main, settings=self._settings(main)).diagnostics
-        wanted = [finding for finding in findings if finding.code.startswith(self.selectors)]
-        return "".join(f"{line}\n" for finding in wanted for line in _lines(finding, folder, main))
+        selected_findings = [finding for finding in findings if finding.code.startswith(self.selectors)]
+        return "".join(f"{line}\n" for finding in selected_findings for line in _lines(finding, folder, main))
 
     def fixed_text(self, folder: Path) -> str:
         """Return the checked file, written by `run`, after all its fixes."""

@@ -148,9 +148,9 @@ _WHEEL = '<xacro:macro name="wheel" params="name prefix"><link name="${name}"/><
 _ARM = '<xacro:macro name="arm" params="prefix"><link name="${prefix}arm"/></xacro:macro>'
 
 
-@pytest.mark.parametrize(("more", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
-def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, more, codes):
-    text = robot(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{more}', PREFIX)
+@pytest.mark.parametrize(("extra_text", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
+def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, extra_text, codes):
+    text = robot(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{extra_text}', PREFIX)
     assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
 
@@ -182,8 +182,8 @@ def test_link_between_colliding_links_needs_no_collision(codes_of, shape, codes)
 
 
 def test_visual_with_zero_size_is_an_info(tmp_path):
-    flat = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
-    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{BOX.format(0)}{flat}</link>'))
+    flat_visual = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
+    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{BOX.format(0)}{flat_visual}</link>'))
     findings = examine(tmp_path / "r.urdf", settings=Settings(select=("LW401",))).diagnostics
     assert [finding.severity.name for finding in findings if finding.code == "LW401"] == ["INFO", "WARNING"]
 
@@ -222,10 +222,10 @@ def test_parameter_of_tag_without_prefix_is_not_reported_as_unused(codes_of, tag
     assert codes_of(robot(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
 
 
-@pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), ("<exec_depend>far</exec_depend>", "INFO")])
-def test_mesh_of_declared_missing_package_is_an_info(tmp_path, more, severity):
+@pytest.mark.parametrize(("extra_text", "severity"), [("", "WARNING"), ("<exec_depend>far</exec_depend>", "INFO")])
+def test_mesh_of_declared_missing_package_is_an_info(tmp_path, extra_text, severity):
     mesh = '<link name="l"><visual><geometry><mesh filename="package://far/a.stl"/></geometry></visual></link>'
-    (tmp_path / "package.xml").write_text(MANIFEST.format(more=more))
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=extra_text))
     (tmp_path / "r.urdf").write_text(robot(mesh))
     findings = examine(tmp_path / "r.urdf", settings=Settings(select=("LW423",))).diagnostics
     assert [finding.severity.name for finding in findings if finding.code == "LW423"] == [severity]
@@ -243,8 +243,8 @@ def test_unused_mathematical_constant_is_accepted(codes_of, value, codes):
 @pytest.mark.parametrize(("default", "codes"), [("^|false", []), ("^", []), ("false", ["LW705"])])
 def test_unused_parameter_with_outer_default_is_accepted(codes_of, default, codes):
     macro = f'<xacro:macro name="m" params="use_sim:={default}"><link name="m"/></xacro:macro>'
-    outer = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
-    text = robot(f'{outer}<link name="base"/>{macro}<xacro:m/>', PREFIX)
+    outer_default = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
+    text = robot(f'{outer_default}<link name="base"/>{macro}<xacro:m/>', PREFIX)
     assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
 
@@ -252,18 +252,20 @@ def test_bare_call_beside_namespaced_call_is_accepted(codes_of):
     chosen = (
         '<xacro:property name="a" value="${xacro.load_yaml(f)}"/><xacro:property name="b" value="${load_yaml(f)}"/>'
     )
-    outer = f'<xacro:macro name="m" params="f">{chosen}<link name="${{a}}${{b}}"/></xacro:macro>'
-    assert codes_of(robot(f'<link name="base"/>{outer}', PREFIX), "LW714", name="r.urdf.xacro") == []
-    alone = outer.replace("xacro.load_yaml", "xacro.abs_filename")
-    assert codes_of(robot(f'<link name="base"/>{alone}', PREFIX), "LW714", name="r.urdf.xacro") == ["LW714"]
+    macro_text = f'<xacro:macro name="m" params="f">{chosen}<link name="${{a}}${{b}}"/></xacro:macro>'
+    assert codes_of(robot(f'<link name="base"/>{macro_text}', PREFIX), "LW714", name="r.urdf.xacro") == []
+    without_namespaced_call = macro_text.replace("xacro.load_yaml", "xacro.abs_filename")
+    assert codes_of(robot(f'<link name="base"/>{without_namespaced_call}', PREFIX), "LW714", name="r.urdf.xacro") == [
+        "LW714"
+    ]
 
 
 @pytest.mark.parametrize(("needs", "codes"), [("q", ["LW724"]), ("p", []), ("helper", [])])
 def test_circular_dependency_is_not_requested(tmp_path, needs, codes):
     depend = "<exec_depend>{}</exec_depend>"
-    for name, more in (("p", ""), ("q", depend.format(needs)), ("helper", depend.format("p"))):
+    for name, extra_text in (("p", ""), ("q", depend.format(needs)), ("helper", depend.format("p"))):
         (tmp_path / name).mkdir()
-        manifest = MANIFEST.format(more=more).replace("<name>p<", f"<name>{name}<")
+        manifest = MANIFEST.format(more=extra_text).replace("<name>p<", f"<name>{name}<")
         (tmp_path / name / "package.xml").write_text(manifest)
     (tmp_path / "q/wheel.xacro").write_text("<robot/>")
     include = '<xacro:include filename="$(find q)/wheel.xacro"/>'
@@ -313,8 +315,8 @@ def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint
     corners = "".join(f"vertex {corner}\n" for corner in ("1 2 3", "1.1 2 3", "1 2 3.1"))
     (tmp_path / "a.stl").write_text(f"solid a\nfacet normal 0 1 0\nouter loop\n{corners}endloop\nendfacet\nendsolid\n")
     visual = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="a.stl"/></geometry></visual>'
-    felt = f'<collision><origin xyz="{origin}"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
-    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{visual}{felt}</link>'))
+    collision = f'<collision><origin xyz="{origin}"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{visual}{collision}</link>'))
     (finding,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW412",))).diagnostics
     assert str(finding.hint).startswith(hint)
 
@@ -323,17 +325,17 @@ def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint
 def test_mesh_in_millimeters_is_reported_once(codes_of, size, codes):
     facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
     visual = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
-    felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
-    text = robot(f'<link name="a">{visual}{felt}</link>')
+    collision = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    text = robot(f'<link name="a">{visual}{collision}</link>')
     finding_codes = codes_of(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
     assert sorted(finding_codes) == codes
 
 
-@pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
-def test_far_shape_is_reported_once(codes_of, far, codes):
-    visual = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
-    felt = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
-    assert codes_of(robot(f'<link name="a">{visual}{felt}</link>'), "LW405", "LW412") == codes
+@pytest.mark.parametrize(("far_shape", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
+def test_far_shape_is_reported_once(codes_of, far_shape, codes):
+    visual = f'<visual><origin xyz="{far_shape} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
+    collision = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    assert codes_of(robot(f'<link name="a">{visual}{collision}</link>'), "LW405", "LW412") == codes
 
 
 @pytest.mark.parametrize(
@@ -359,9 +361,9 @@ def test_mesh_path_in_ros_installation_is_reported_once(tmp_path, address, hint)
     assert (finding.code, str(finding.hint)) == ("LW422", hint)
 
 
-@pytest.mark.parametrize("big", ["a", "b"])
-def test_disconnected_parts_are_reported_once(codes_of, big):
-    text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=big)}')
+@pytest.mark.parametrize("large_shape", ["a", "b"])
+def test_disconnected_parts_are_reported_once(codes_of, large_shape):
+    text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=large_shape)}')
     assert codes_of(text, "LW103", "URDF152") == ["URDF152"]
 
 
@@ -420,8 +422,8 @@ def test_includes_relative_to_package_folder_are_one_finding_per_file(
 def test_mesh_package_declared_by_sibling_package_is_an_info(tmp_path, declaring):
     for name in ("p", "beside"):
         (tmp_path / name).mkdir()
-        more = "<exec_depend>arm_description</exec_depend>" if name == declaring else ""
-        (tmp_path / name / "package.xml").write_text(MANIFEST.format(more=more))
+        extra_text = "<exec_depend>arm_description</exec_depend>" if name == declaring else ""
+        (tmp_path / name / "package.xml").write_text(MANIFEST.format(more=extra_text))
     mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
     links = (f'<link name="{name}">{mesh.format(name)}</link>' for name in ("arm_description", "far_description"))
     (tmp_path / "p/r.urdf").write_text(robot("".join(links)))
@@ -437,9 +439,9 @@ def test_material_is_not_reported_beside_missing_include(codes_of):
     assert codes_of(robot(include + link, PREFIX), "URDF160") == []
 
 
-@pytest.mark.parametrize(("more", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
-def test_robot_with_ros2_control_needs_no_shapes(codes_of, more, codes):
-    assert codes_of(robot(f'<link name="base"/>{moving("a", "")}{more}'), "LW102") == codes
+@pytest.mark.parametrize(("extra_text", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
+def test_robot_with_ros2_control_needs_no_shapes(codes_of, extra_text, codes):
+    assert codes_of(robot(f'<link name="base"/>{moving("a", "")}{extra_text}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(("xyz", "codes"), [("0 0 0", []), ("0 0 1", ["LW105"])])
@@ -542,14 +544,14 @@ def test_wheels_on_rocker_need_not_be_level(codes_of, axis, codes):
     assert codes_of(robot(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
 
 
-@pytest.mark.parametrize(("between", "codes"), [(False, ["LW641"]), (True, [])])
-def test_link_that_carries_wheel_is_not_a_wheel(codes_of, between, codes):
+@pytest.mark.parametrize(("intermediate", "codes"), [(False, ["LW641"]), (True, [])])
+def test_link_that_carries_wheel_is_not_a_wheel(codes_of, intermediate, codes):
     carrier = ROVER.replace('name="rocker"', 'name="left_wheel_connector"').format(
         rocker="left_wheel_connector", axis="0 1 0"
     )
     ends = '<parent link="left_wheel_connector"/><child link="leg"/>'
     leg = f'<link name="leg"/><joint name="leg" type="fixed">{ends}</joint>'
-    wheel = WHEEL.format("front", "leg" if between else "base", 0.2, 0)
+    wheel = WHEEL.format("front", "leg" if intermediate else "base", 0.2, 0)
     assert codes_of(robot(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
 
 

@@ -327,13 +327,13 @@ def test_missing_key_in_file_of_runtime_value_is_not_an_error(check):
 
 def test_copied_inertia_hides_too_large_inertia_of_other_set(check):
     mass = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-    own = mass.replace('ixx="1"', 'ixx="0.0010${index}"').replace('iyy="1" izz="1"', 'iyy="0.001" izz="0.001"')
+    indexed_mass = mass.replace('ixx="1"', 'ixx="0.0010${index}"').replace('iyy="1" izz="1"', 'iyy="0.001" izz="0.001"')
     robot = f"""<robot {XACRO} name="r">
   <xacro:arg name="arm" default="false"/>
   <xacro:macro name="part" params="index"><joint name="j${{index}}" type="fixed"><parent link="base_link"/>
     <child link="l${{index}}"/></joint><link name="l${{index}}"><collision><geometry>
     <box size="0.1 0.1 0.1${{index}}"/></geometry></collision><xacro:if value="${{index &lt; 4}}">{mass}</xacro:if>
-    <xacro:unless value="${{index &lt; 4}}">{own}</xacro:unless></link></xacro:macro>
+    <xacro:unless value="${{index &lt; 4}}">{indexed_mass}</xacro:unless></link></xacro:macro>
   <link name="base_link"/>
   <xacro:part index="1"/><xacro:part index="2"/><xacro:part index="3"/>
   <xacro:if value="$(arg arm)">{"".join(f'<xacro:part index="{index}"/>' for index in range(4, 9))}</xacro:if>
@@ -341,11 +341,11 @@ def test_copied_inertia_hides_too_large_inertia_of_other_set(check):
     launch = LAUNCH.replace("'name': 'a', 'type': kind", "'arm': kind").format(kinds="'false', 'true'")
     files = {"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch}
     assert [finding["code"] for finding in check(files) if finding["code"].startswith("LW3")] == ["LW315"]
-    alone = {
+    file_without_copy = {
         "arm/urdf/arm.urdf.xacro": robot.replace('default="false"', 'default="true"'),
         "arm/launch/view.launch.py": "",
     }
-    assert [finding["code"] for finding in check(alone) if finding["code"].startswith("LW3")] == ["LW324"]
+    assert [finding["code"] for finding in check(file_without_copy) if finding["code"].startswith("LW3")] == ["LW324"]
 
 
 TURNED = """
@@ -375,7 +375,9 @@ def test_rules_run_once_for_sets_with_same_robot(check, monkeypatch, velocity, o
     for code in ("LW206", "LW701"):
         rule = find_rule(code)
         monkeypatch.setattr(
-            type(rule), "check", lambda self, subject, own=rule.check: ran.append(self.code) or list(own(subject))
+            type(rule),
+            "check",
+            lambda self, subject, original_check=rule.check: ran.append(self.code) or list(original_check(subject)),
         )
     files = given_kinds(TURNED.format(velocity=velocity), "1", "2", "3")
     findings = check(files, ".", "--select", "LW206,LW701")

@@ -38,9 +38,9 @@ ROBOT = """<?xml version="1.0"?>
 def element(text: str, *path: str) -> Element:
     root = parse(text, "robot.urdf").root
     for tag in path:
-        inner = root.first(tag)
-        assert inner is not None
-        root = inner
+        child = root.first(tag)
+        assert child is not None
+        root = child
     return root
 
 

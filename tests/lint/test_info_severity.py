@@ -78,10 +78,10 @@ def test_high_density_of_fixed_part_is_an_info(severity_of, mass, severity):
 
 
 @pytest.mark.parametrize(
-    ("more", "severity"), [("", "INFO"), (STATES, "INFO"), (DRIVEN, "WARNING"), (PLUGIN, "WARNING")]
+    ("extra_text", "severity"), [("", "INFO"), (STATES, "INFO"), (DRIVEN, "WARNING"), (PLUGIN, "WARNING")]
 )
-def test_opposing_wheels_are_warning_only_if_driven(severity_of, more, severity):
-    assert severity_of("LW643", WHEELS + more) == severity
+def test_opposing_wheels_are_warning_only_if_driven(severity_of, extra_text, severity):
+    assert severity_of("LW643", WHEELS + extra_text) == severity
 
 
 @pytest.mark.parametrize(("triangles", "severity"), [(40_000, "INFO"), (40_001, "WARNING")])
@@ -103,10 +103,10 @@ def test_locked_sensor_joint_is_an_info(severity_of, name, end, severity):
     assert severity_of("LW202", f'<link name="{name}_link"/>{joint}{limit}') == severity
 
 
-@pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), (f"<visual>{BOX}</visual>", "INFO")])
-def test_footprint_that_is_whole_body_is_an_info(severity_of, more, severity):
+@pytest.mark.parametrize(("extra_text", "severity"), [("", "WARNING"), (f"<visual>{BOX}</visual>", "INFO")])
+def test_footprint_that_is_whole_body_is_an_info(severity_of, extra_text, severity):
     joint = '<joint name="j" type="fixed"><parent link="base"/><child link="base_footprint"/></joint>'
-    link = f'<link name="base_footprint"><collision>{BOX.replace("0.01", "1")}</collision>{more}</link>'
+    link = f'<link name="base_footprint"><collision>{BOX.replace("0.01", "1")}</collision>{extra_text}</link>'
     assert severity_of("LW623", joint + link) == severity
 
 
@@ -142,7 +142,7 @@ def test_non_ascii_mesh_name_is_an_info_and_blank_is_a_warning(severity_of, name
 
 
 @pytest.mark.parametrize(
-    ("names", "used", "severity"),
+    ("names", "used_name", "severity"),
     [
         ("d4_depth_px d4_depth_py d4_depth_pz", 2, "INFO"),
         ("d4_depth_px d4_depth_py d4_depth_pz", 1, "WARNING"),
@@ -151,10 +151,10 @@ def test_non_ascii_mesh_name_is_an_info_and_blank_is_a_warning(severity_of, name
         ("d4_wheel_radios d4_wheel_radius d4_wheel_width", 2, "WARNING"),
     ],
 )
-def test_unused_property_of_dimension_table_is_an_info(tmp_path, names, used, severity):
-    first, *others = names.split()
-    text = "".join(f'<xacro:property name="{name}" value="0.2"/>' for name in (first, *others))
-    links = "".join(f'<link name="l_${{{name}}}_{name}"/>' for name in others[:used])
+def test_unused_property_of_dimension_table_is_an_info(tmp_path, names, used_name, severity):
+    first, *other_names = names.split()
+    text = "".join(f'<xacro:property name="{name}" value="0.2"/>' for name in (first, *other_names))
+    links = "".join(f'<link name="l_${{{name}}}_{name}"/>' for name in other_names[:used_name])
     prefix = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     (tmp_path / "r.urdf.xacro").write_text(f'<robot name="r" {prefix}>{text}{links}</robot>')
     findings = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
@@ -180,10 +180,10 @@ def test_relative_mesh_path_beside_mujoco_model_is_an_info(severity_of, tmp_path
 
 
 @pytest.mark.parametrize(
-    ("more", "shape", "severity"),
+    ("extra_text", "shape", "severity"),
     [("", "", "INFO"), ("<gazebo/>", "", "WARNING"), ("", f"<visual>{BOX}</visual>", "WARNING")],
 )
-def test_missing_inertial_without_shape_and_simulator_is_an_info(severity_of, more, shape, severity):
+def test_missing_inertial_without_shape_and_simulator_is_an_info(severity_of, extra_text, shape, severity):
     robot = moving("3") + f'<link name="command">{shape}</link>'
     joint = '<joint name="k" type="continuous"><parent link="base"/><child link="command"/></joint>'
-    assert severity_of("LW301", robot + joint + more) == severity
+    assert severity_of("LW301", robot + joint + extra_text) == severity

@@ -59,5 +59,5 @@ def test_element_rules_hold_for_partial_descriptions():
 
 
 def test_whole_robot_rules_skip_partial_descriptions():
-    whole = {"LW102", "LW103", "LW121", "LW302", "LW507", "LW701", "LW849"}
-    assert not whole & {rule.code for rule in all_rules() if rule.holds_for_parts}
+    whole_robot_codes = {"LW102", "LW103", "LW121", "LW302", "LW507", "LW701", "LW849"}
+    assert not whole_robot_codes & {rule.code for rule in all_rules() if rule.holds_for_parts}

@@ -58,17 +58,17 @@ PAGES = ("inertia", "geometry", "meshes", "materials")
 
 @pytest.mark.parametrize("seed", range(60))
 def test_shape_rules_survive_extreme_numbers(seed, tmp_path, capsys):
-    chance = random.Random(seed)
-    case = chance.choice([case for case in load_cases() if case.page in PAGES])
+    rng = random.Random(seed)
+    case = rng.choice([case for case in load_cases() if case.page in PAGES])
     for name, text in case.files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
     path = tmp_path / next(iter(case.files))
-    share = chance.choice((0.05, 0.2, 0.6))
+    share = rng.choice((0.05, 0.2, 0.6))
     text = path.read_text(encoding="utf-8")
-    path.write_text(NUMBER.sub(lambda match: chance.choice(EXTREME) if chance.random() < share else match[0], text))
+    path.write_text(NUMBER.sub(lambda match: rng.choice(EXTREME) if rng.random() < share else match[0], text))
     examine(path, settings=Settings(select=RULES))
-    assert main(["inertia", str(path), "--format", chance.choice(("text", "json"))]) in (0, 1)
+    assert main(["inertia", str(path), "--format", rng.choice(("text", "json"))]) in (0, 1)
     capsys.readouterr()
 
 

@@ -30,12 +30,12 @@ def findings_of(tmp_path, monkeypatch):
     return check
 
 
-def link(inertial, more=""):
-    return f'<model name="m">{more}<link name="l">{inertial}</link></model>'
+def link(inertial, content=""):
+    return f'<model name="m">{content}<link name="l">{inertial}</link></model>'
 
 
-def tensor(ixx, iyy, izz, more=""):
-    return f"<inertial><inertia><ixx>{ixx}</ixx><iyy>{iyy}</iyy><izz>{izz}</izz>{more}</inertia></inertial>"
+def tensor(ixx, iyy, izz, products=""):
+    return f"<inertial><inertia><ixx>{ixx}</ixx><iyy>{iyy}</iyy><izz>{izz}</izz>{products}</inertia></inertial>"
 
 
 @pytest.mark.parametrize(

@@ -34,11 +34,11 @@ async def resolving_editor(package):
         yield editor
 
 
-async def actions(editor, name: str, text: str, place: str, only: Sequence[str] | None = None):
+async def actions(editor, name: str, text: str, place: str, kinds: Sequence[str] | None = None):
     """Return the actions for a selected text of a file."""
     start = text.index(place)
     selected = TextPositions(text).range(start, start + len(place))
-    context = types.CodeActionContext(editor.diagnostics.get(editor.uri(name), ()), only)
+    context = types.CodeActionContext(editor.diagnostics.get(editor.uri(name), ()), kinds)
     parameters = types.CodeActionParams(editor.document(name), selected, context)
     return await editor.client.text_document_code_action_async(parameters)
 

@@ -22,8 +22,8 @@ def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
     """Open a text, and return the position of its cursor."""
     before = text[: text.index("█")]
     editor.open(name, text.replace("█", ""))
-    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    return types.TextDocumentPositionParams(editor.document(name), at)
+    position = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    return types.TextDocumentPositionParams(editor.document(name), position)
 
 
 @pytest.mark.parametrize(

@@ -35,12 +35,12 @@ async def address(editor: Editor, name: str, *, opens: bool = False) -> str:
     return await editor.client.workspace_execute_command_async(parameters)
 
 
-async def message(socket, kind: str, **wanted) -> dict:
+async def message(socket, kind: str, **fields) -> dict:
     """Return the next message of a kind from a page's socket, with some content."""
     async with asyncio.timeout(SECONDS):
         async for received in socket:
             message = json.loads(received.data) if isinstance(received.data, str) else {}
-            if message.get("type") == kind and all(message.get(key) == value for key, value in wanted.items()):
+            if message.get("type") == kind and all(message.get(key) == value for key, value in fields.items()):
                 return message
     raise AssertionError(f"the page was closed without '{kind}'")
 

@@ -35,9 +35,9 @@ async def test_formatting_matches_format_command(editor):
         types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
     )
     assert applied(MESSY, edits) == MAIN
-    where = types.Range(place(MESSY, "      <link"), place(MESSY, "<xacro:bar"))
+    selected_range = types.Range(place(MESSY, "      <link"), place(MESSY, "<xacro:bar"))
     edits = await editor.client.text_document_range_formatting_async(
-        types.DocumentRangeFormattingParams(editor.document(FILE), where, OPTIONS)
+        types.DocumentRangeFormattingParams(editor.document(FILE), selected_range, OPTIONS)
     )
     assert '  <link name="base"/>\n' in applied(MESSY, edits)
 
@@ -87,13 +87,13 @@ async def test_code_action_fixes_finding(editor):
     (finding,) = await editor.until("urdf/parts.xacro", "LW221")
     context = types.CodeActionContext([finding], only=["quickfix", "source"])
     parameters = types.CodeActionParams(editor.document("urdf/parts.xacro"), finding.range, context)
-    fix, everything, ignoring = await editor.client.text_document_code_action_async(parameters)
-    for action in (fix, everything):
+    fix, fix_all, ignoring = await editor.client.text_document_code_action_async(parameters)
+    for action in (fix, fix_all):
         (change,) = action.edit.document_changes
         assert [edit.new_text for edit in change.edits] == ["0 0 1"]
         assert change.text_document.version == 1
     assert ignoring.title == "ignore LW221 here, with a reason"
-    assert [fix.kind, everything.kind] == [types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll]
+    assert [fix.kind, fix_all.kind] == [types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll]
 
 
 async def test_build_files_have_no_symbols(editor):

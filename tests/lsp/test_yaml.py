@@ -21,8 +21,8 @@ drive:
 
 async def test_parameter_file_is_completed_with_snippets(editor):
     editor.open(FILE, TEXT)
-    where = place(TEXT, "    wheel_\n", len("    wheel_"))
-    parameters = types.CompletionParams(editor.document(FILE), where)
+    position = place(TEXT, "    wheel_\n", len("    wheel_"))
+    parameters = types.CompletionParams(editor.document(FILE), position)
     items = await editor.client.text_document_completion_async(parameters)
     assert items[0].label == "wheel_separation"
     assert (items[0].detail, items[0].sort_text) == ("double = 0.0", "00000")
@@ -31,10 +31,12 @@ async def test_parameter_file_is_completed_with_snippets(editor):
 
 async def test_joint_in_parameter_file_has_hover_and_definition(editor):
     editor.open(FILE, TEXT)
-    where = place(TEXT, "upper_joint", 3)
-    hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), where))
+    position = place(TEXT, "upper_joint", 3)
+    hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), position))
     assert "joint upper_joint" in hover.contents.value
-    (target,) = await editor.client.text_document_definition_async(types.DefinitionParams(editor.document(FILE), where))
+    (target,) = await editor.client.text_document_definition_async(
+        types.DefinitionParams(editor.document(FILE), position)
+    )
     assert target.uri.endswith("parts.xacro")
     assert (target.range.start.line, target.range.end.character - target.range.start.character) == (3, 13)
 

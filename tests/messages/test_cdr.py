@@ -36,8 +36,8 @@ def test_serialized_bytes_match_rosbags(name):
         message = random_message(get_message(name), seed)
         ours = serialize(message)
         assert ours == bytes(rosbags_store().serialize_cdr(rosbags_object(message), name))
-        big = bytes(rosbags_store().serialize_cdr(rosbags_object(message), name, little_endian=False))
-        assert deserialize(big, type(message)) == message
+        big_endian = bytes(rosbags_store().serialize_cdr(rosbags_object(message), name, little_endian=False))
+        assert deserialize(big_endian, type(message)) == message
 
 
 @given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32))
@@ -108,14 +108,14 @@ def test_length_beyond_data_allocates_no_memory(name):
     cls = get_message(name)
     data = serialize(cls())
     tracemalloc.start()
-    for at in range(4, len(data) - 3):
+    for offset in range(4, len(data) - 3):
         for length in (0x7FFFFFFF, 0xFFFFFFFF, 0x10000000):
-            wrong = data[:at] + struct.pack("<I", length) + data[at + 4 :]
+            malformed = data[:offset] + struct.pack("<I", length) + data[offset + 4 :]
             with contextlib.suppress(MessageDataError):
-                deserialize(wrong, cls)
-    _, most = tracemalloc.get_traced_memory()
+                deserialize(malformed, cls)
+    _, peak_bytes = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert most < 2_000_000
+    assert peak_bytes < 2_000_000
 
 
 class TestRejectedBytes:
@@ -236,8 +236,8 @@ def test_cached_names_survive_other_names_in_between():
 
 def test_deeply_nested_types_round_trip(tmp_path, interface_package):
     for depth in range(12):
-        inner = f"Level{depth + 1}[] below\nLevel{depth + 1} one" if depth < 11 else "int8 n"
-        interface_package.write("msg", f"Level{depth}", f"bool b\n{inner}\n")
+        field_lines = f"Level{depth + 1}[] below\nLevel{depth + 1} one" if depth < 11 else "int8 n"
+        interface_package.write("msg", f"Level{depth}", f"bool b\n{field_lines}\n")
     cls = get_message(f"{interface_package.name}/msg/Level0")
     lower = [get_message(f"{interface_package.name}/msg/Level{depth}") for depth in range(12)]
     message = cls(below=[lower[1](b=True, below=[lower[2]()])])

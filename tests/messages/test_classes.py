@@ -63,8 +63,8 @@ class TestChecks:
         vector = get_message("geometry_msgs/msg/Vector3")
         assert refusal(vector, "x", 1) == "The 'x' field must be of type 'float'"
         color = get_message("std_msgs/msg/ColorRGBA")
-        wanted = "The 'r' field must be a float in [-3.402823466e+38, 3.402823466e+38]"
-        assert refusal(color, "r", 1e39) == wanted
+        expected = "The 'r' field must be a float in [-3.402823466e+38, 3.402823466e+38]"
+        assert refusal(color, "r", 1e39) == expected
         assert color(r=float("inf")).r == float("inf")
         assert vector(x=np.float64(2.5)).x == 2.5
 
@@ -72,19 +72,19 @@ class TestChecks:
         assert refusal(get_message("std_msgs/msg/Bool"), "data", 1) == "The 'data' field must be of type 'bool'"
         assert refusal(get_message("std_msgs/msg/String"), "data", b"a") == "The 'data' field must be of type 'str'"
         assert refusal(get_message("std_msgs/msg/String"), "data", UserString("a"))
-        wanted = "The 'data' field must be of type 'bytes' or 'ByteString' with length 1"
+        expected = "The 'data' field must be of type 'bytes' or 'ByteString' with length 1"
         byte = get_message("std_msgs/msg/Byte")
-        assert refusal(byte, "data", b"ab") == refusal(byte, "data", 1) == wanted
+        assert refusal(byte, "data", b"ab") == refusal(byte, "data", 1) == expected
         assert byte(data=bytearray(b"a")).data == b"a"
         bounded = get_message("test_msgs/msg/Strings")
-        wanted = "The 'bounded_string_value' field must be string value not longer than 22"
-        assert refusal(bounded, "bounded_string_value", "x" * 23) == wanted
+        expected = "The 'bounded_string_value' field must be string value not longer than 22"
+        assert refusal(bounded, "bounded_string_value", "x" * 23) == expected
         assert bounded(bounded_string_value=UserString("abc")).bounded_string_value == "abc"
 
     def test_nested_message_field_rejects_other_types(self):
         twist = get_message("geometry_msgs/msg/Twist")
-        wanted = "The 'linear' field must be a sub message of type 'Vector3'"
-        assert refusal(twist, "linear", get_message("geometry_msgs/msg/Point")()) == wanted
+        expected = "The 'linear' field must be a sub message of type 'Vector3'"
+        assert refusal(twist, "linear", get_message("geometry_msgs/msg/Point")()) == expected
 
     def test_number_sequences_reject_wrong_values(self):
         laser = get_message("sensor_msgs/msg/LaserScan")
@@ -99,27 +99,27 @@ class TestChecks:
         assert refusal(laser, "ranges", array("d")) == "The 'ranges' array.array() must have the type code of 'f'"
         assert DOUBLES in refusal(get_message("sensor_msgs/msg/JointState"), "position", ["a"])
         image = get_message("sensor_msgs/msg/Image")
-        wanted = (
+        expected = (
             "The 'data' field must be a set or sequence and each value of type 'int' "
             "and each unsigned integer in [0, 255]"
         )
-        assert refusal(image, "data", [256]) == refusal(image, "data", np.array([300])) == wanted
-        assert refusal(image, "data", np.array([1.5])) == wanted
+        assert refusal(image, "data", [256]) == refusal(image, "data", np.array([300])) == expected
+        assert refusal(image, "data", np.array([1.5])) == expected
 
     def test_bounded_sequences_and_arrays_reject_wrong_length(self):
         cls = get_message("test_msgs/msg/BoundedSequences")
         begin = "The 'int32_values' field must be a set or sequence with length <= 3 and each value of type 'int'"
         assert refusal(cls, "int32_values", [1, 2, 3, 4]).startswith(begin)
-        wanted = "The 'int32_values' array.array() must have a size <= 3"
-        assert refusal(cls, "int32_values", array("i", range(4))) == wanted
+        expected = "The 'int32_values' array.array() must have a size <= 3"
+        assert refusal(cls, "int32_values", array("i", range(4))) == expected
         assert refusal(cls, "string_values", ["a"] * 4) == (
             "The 'string_values' field must be a set or sequence with length <= 3 and each value of type 'str'"
         )
         arrays = get_message("test_msgs/msg/Arrays")
-        wanted = "The 'float32_values' numpy.ndarray() must have the dtype of 'numpy.float32'"
-        assert refusal(arrays, "float32_values", np.zeros(3)) == wanted
-        wanted = "The 'float64_values' numpy.ndarray() must have a size of 3"
-        assert refusal(arrays, "float64_values", np.zeros(4)) == wanted
+        expected = "The 'float32_values' numpy.ndarray() must have the dtype of 'numpy.float32'"
+        assert refusal(arrays, "float32_values", np.zeros(3)) == expected
+        expected = "The 'float64_values' numpy.ndarray() must have a size of 3"
+        assert refusal(arrays, "float64_values", np.zeros(4)) == expected
         assert refusal(arrays, "bool_values", [True]) == (
             "The 'bool_values' field must be a set or sequence with length 3 and each value of type 'bool'"
         )
@@ -130,8 +130,8 @@ class TestChecks:
 
     def test_message_sequences_reject_other_types(self):
         path = get_message("nav_msgs/msg/Path")
-        wanted = "The 'poses' field must be a set or sequence and each value of type 'PoseStamped'"
-        assert refusal(path, "poses", [1]) == wanted
+        expected = "The 'poses' field must be a set or sequence and each value of type 'PoseStamped'"
+        assert refusal(path, "poses", [1]) == expected
 
     def test_constructor_rejects_unknown_arguments(self):
         with pytest.raises(AssertionError, match=r"^Invalid arguments passed to constructor: datum, foo$"):
@@ -155,15 +155,21 @@ class TestArrays:
         assert state.position is values
         np.asarray(state.position)[0] = 7.0
         assert values[0] == 7.0
-        for given in ((1.0, 2.0), UserList([1.0, 2.0]), np.array([1.0, 2.0]), np.array([1, 2]), np.float32([1.0, 2.0])):
-            state.velocity = given
+        for assigned in (
+            (1.0, 2.0),
+            UserList([1.0, 2.0]),
+            np.array([1.0, 2.0]),
+            np.array([1, 2]),
+            np.float32([1.0, 2.0]),
+        ):
+            state.velocity = assigned
             assert state.velocity == array("d", [1.0, 2.0])
 
     def test_byte_sequences_accept_buffers_and_arrays(self):
         image = get_message("sensor_msgs/msg/Image")
         pixels = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
-        for given in (pixels, pixels.tobytes(), bytearray(pixels.tobytes()), memoryview(pixels.tobytes())):
-            assert image(data=given).data == array("B", range(24))
+        for assigned in (pixels, pixels.tobytes(), bytearray(pixels.tobytes()), memoryview(pixels.tobytes())):
+            assert image(data=assigned).data == array("B", range(24))
         assert image(data=pixels[:, ::2]).data.tolist() == pixels[:, ::2].ravel().tolist()
 
     def test_constructor_accepts_integers_for_floats_as_rclpy(self):
@@ -266,8 +272,8 @@ def test_humble_messages_match_rosbags():
     assert set(store.fielddefs) <= set(interface_names("msg"))
     for name, (constants, fields) in store.fielddefs.items():
         structure = LIBRARY.structure(name)
-        wanted = [field for field, _ in fields if field != "structure_needs_at_least_one_member"]
-        assert [field.name for field in structure.fields] == wanted
+        expected = [field for field, _ in fields if field != "structure_needs_at_least_one_member"]
+        assert [field.name for field in structure.fields] == expected
         assert [constant.name for constant in structure.constants] == [constant[0] for constant in constants]
 
 

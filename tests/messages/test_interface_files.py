@@ -391,13 +391,13 @@ class TestEmbeddedDefinitions:
             f"{'=' * 80}\nMSG: std_msgs/Header\nint32 another_header\n"
         )
         add_definitions("carried_msgs/msg/Outer", text, "some.mcap")
-        outer = get_message("carried_msgs/msg/Outer")
-        inner = get_message("carried_msgs/msg/Inner")
-        assert outer(inner=[inner()]).inner[0].n == 5
-        assert outer.get_fields_and_field_types()["header"] == "std_msgs/Header"
-        assert hasattr(outer().header, "frame_id"), "Linkwright's definitions take precedence"
+        outer_class = get_message("carried_msgs/msg/Outer")
+        inner_class = get_message("carried_msgs/msg/Inner")
+        assert outer_class(inner=[inner_class()]).inner[0].n == 5
+        assert outer_class.get_fields_and_field_types()["header"] == "std_msgs/Header"
+        assert hasattr(outer_class().header, "frame_id"), "Linkwright's definitions take precedence"
         assert {"carried_msgs/msg/Inner", "carried_msgs/msg/Outer"} <= set(interface_names("msg"))
-        assert deserialize(serialize(outer()), outer) == outer()
+        assert deserialize(serialize(outer_class()), outer_class) == outer_class()
 
     def test_first_of_two_embedded_definitions_is_used(self):
         add_definitions("carried_msgs/msg/Twice", "int32 first\n", "a.mcap")

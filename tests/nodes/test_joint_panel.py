@@ -13,9 +13,9 @@ from tests.nodes.harness import joint, mimic, robot
 ROBOT = robot(
     joint("lift", "prismatic", limit="lower='0.5' upper='1.5'"),
     joint("stuck", limit="lower='1' upper='1'"),
-    joint("claw", more=mimic("grip", "multiplier='-1' offset='0.1'")),
+    joint("claw", content=mimic("grip", "multiplier='-1' offset='0.1'")),
     joint("grip"),
-    joint("follows_stuck", more=mimic("stuck")),
+    joint("follows_stuck", content=mimic("stuck")),
     joint("spin", "continuous"),
 )
 
@@ -117,17 +117,17 @@ async def test_invalid_moves_are_ignored(harness, gui, messages, name, value):
 async def test_randomize_covers_range_within_limits(harness, gui, messages, logged):
     panel = JointPanel(gui.node, gui.joints, gui.publish_soon, Random(1))
     panel.rebuild()
-    seen = {name: [] for name in panel.positions()}
+    positions_by_joint = {name: [] for name in panel.positions()}
     for _ in range(200):
         panel.randomize()
         for name, position in panel.positions().items():
-            seen[name].append(position)
+            positions_by_joint[name].append(position)
     for slider in panel.sliders():
         if slider.mimic is None:
             width = slider.upper - slider.lower
-            assert slider.lower <= min(seen[slider.name]) < slider.lower + 0.1 * width
-            assert slider.upper - 0.1 * width < max(seen[slider.name]) <= slider.upper
-    assert seen["claw"] == pytest.approx([0.1 - position for position in seen["grip"]])
+            assert slider.lower <= min(positions_by_joint[slider.name]) < slider.lower + 0.1 * width
+            assert slider.upper - 0.1 * width < max(positions_by_joint[slider.name]) <= slider.upper
+    assert positions_by_joint["claw"] == pytest.approx([0.1 - position for position in positions_by_joint["grip"]])
     assert logged("INFO")[-1] == "Randomizing"
 
 
@@ -165,9 +165,9 @@ async def test_subscribers_can_unsubscribe_and_fail(harness, gui, messages, logg
     def fail(_change):
         raise RuntimeError("page is gone")
 
-    late = []
+    late_updates = []
     gui.panel.subscribe(fail)
-    end = gui.panel.subscribe(late.append)
+    end = gui.panel.subscribe(late_updates.append)
     gui.panel.set_position("grip", 1.0)
     await harness.graph.settle()
     end()
@@ -175,7 +175,7 @@ async def test_subscribers_can_unsubscribe_and_fail(harness, gui, messages, logg
     gui.panel.set_position("grip", 0.0)
     await harness.graph.settle()
     assert messages == ["positions", "positions"]
-    assert late == ["positions"]
+    assert late_updates == ["positions"]
     assert logged("ERROR")[0].startswith("joint panel callback failed:\nTraceback")
 
 

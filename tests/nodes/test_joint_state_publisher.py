@@ -15,8 +15,8 @@ from tests.nodes.harness import joint, mimic, robot
 
 SAFETY = "<safety_controller k_velocity='1' soft_lower_limit='-0.5' soft_upper_limit='0.5'/>"
 CHAIN = robot(
-    joint("c", more=mimic("b", "multiplier='3' offset='0.1'")),
-    joint("b", more=mimic("a", "multiplier='2' offset='0.5'")),
+    joint("c", content=mimic("b", "multiplier='3' offset='0.1'")),
+    joint("b", content=mimic("a", "multiplier='2' offset='0.5'")),
     joint("a"),
 )
 
@@ -56,7 +56,7 @@ async def test_joints_keep_file_order_and_fixed_ones_are_omitted(harness):
         robot(
             joint("z", "continuous"),
             joint("f", "fixed"),
-            joint("m", more=mimic("a")),
+            joint("m", content=mimic("a")),
             joint("p", "planar"),
             joint("l", "floating"),
             joint("a", "prismatic"),
@@ -83,9 +83,9 @@ async def test_robot_without_joints_publishes_nothing(harness, clock):
         (joint("j"), {"zeros": {"j": 1.5}}, 1.5),
         (joint("j"), {"zeros": {"j": 1}}, 1.0),
         (joint("j"), {"zeros.j": 9.0}, 9.0),
-        (joint("j", more=SAFETY, limit="lower='0.25' upper='3'"), {}, 0.375),
+        (joint("j", content=SAFETY, limit="lower='0.25' upper='3'"), {}, 0.375),
         (
-            joint("j", more=SAFETY, limit="lower='0.25' upper='3'"),
+            joint("j", content=SAFETY, limit="lower='0.25' upper='3'"),
             {"use_smallest_joint_limits": False},
             1.625,
         ),
@@ -106,9 +106,9 @@ class TestLimits:
         await harness.describe(
             robot(
                 joint("revolute"),
-                joint("continuous", "continuous", more="<limit lower='-9' upper='9' effort='1' velocity='1'/>"),
-                joint("soft", more=SAFETY),
-                joint("half", more="<safety_controller k_velocity='1' soft_upper_limit='0.5'/>"),
+                joint("continuous", "continuous", content="<limit lower='-9' upper='9' effort='1' velocity='1'/>"),
+                joint("soft", content=SAFETY),
+                joint("half", content="<safety_controller k_velocity='1' soft_upper_limit='0.5'/>"),
             )
         )
         assert self.ranges(publisher) == {
@@ -180,13 +180,13 @@ class TestDependentJoints:
     async def test_mimic_cycle_is_rejected_and_last_robot_stays(self, harness, logged):
         publisher = harness.joint_state_publisher()
         await harness.describe(robot(joint("a")))
-        await harness.describe(robot(joint("a", more=mimic("b")), joint("b", more=mimic("a"))))
+        await harness.describe(robot(joint("a", content=mimic("b")), joint("b", content=mimic("a"))))
         assert logged("ERROR") == ["Found an infinite recursive mimic chain: ['a', 'b', 'a']"]
         assert list(publisher.joints.layout.ranges) == ["a"]
 
     async def test_mimic_of_fixed_joint_is_reported(self, harness, logged):
         harness.joint_state_publisher()
-        await harness.describe(robot(joint("f", "fixed"), joint("a", more=mimic("f", "offset='0.25'")), joint("b")))
+        await harness.describe(robot(joint("f", "fixed"), joint("a", content=mimic("f", "offset='0.25'")), joint("b")))
         assert logged("WARN") == ["joint 'a' follows joint 'f', which does not move"]
         assert harness.positions() == {"a": 0.25, "b": 0.0}
 
@@ -216,11 +216,11 @@ class TestSources:
 async def test_sweep_reverses_at_limits_and_wraps_continuous_joints(harness, clock):
     harness.joint_state_publisher(delta=1.0, rate=1)
     await harness.describe(robot(joint("r", limit="lower='-0.5' upper='1.5'"), joint("c", "continuous")))
-    seen = []
+    positions = []
     for _ in range(8):
         await clock.advance(1.0)
-        seen.append(tuple(harness.positions().values()))
-    revolute, continuous = zip(*seen, strict=True)
+        positions.append(tuple(harness.positions().values()))
+    revolute, continuous = zip(*positions, strict=True)
     assert revolute == (1.0, 1.5, 0.5, -0.5, -0.5, 0.5, 1.5, 1.5)
     assert continuous == pytest.approx((1.0, 2.0, 3.0, -pi, 1 - pi, 2 - pi, 3 - pi, 4 - pi))
 
@@ -267,11 +267,11 @@ class TestFile:
         assert list(harness.positions()) == ["from_file"]
 
     async def test_invalid_files_and_arguments_are_rejected(self, harness, tmp_path, logged):
-        bad = tmp_path / "bad.urdf"
-        bad.write_text("<robot", encoding="utf-8")
+        invalid_file = tmp_path / "bad.urdf"
+        invalid_file.write_text("<robot", encoding="utf-8")
         for arguments, message in (
             (["nowhere.urdf"], "URDF file 'nowhere.urdf' cannot be read: No such file or directory"),
-            ([str(bad)], ""),
+            ([str(invalid_file)], ""),
             (["a.urdf", "b.urdf"], "unrecognized arguments: b.urdf"),
         ):
             with pytest.raises(LinkwrightError) as caught:

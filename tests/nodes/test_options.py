@@ -109,9 +109,9 @@ async def test_default_name_matches_started_node(harness, executable, terminal):
 
 
 async def test_log_level_argument_is_applied(graph):
-    node, others = create_node(graph, NodeOptions(arguments=["--ros-args", "--log-level", "warn"]), "node")
+    node, other_options = create_node(graph, NodeOptions(arguments=["--ros-args", "--log-level", "warn"]), "node")
     assert node.get_logger().level is LogLevel.WARN
-    assert others == []
+    assert other_options == []
 
 
 async def test_ros_arguments_are_applied(graph, tmp_path):
@@ -119,9 +119,9 @@ async def test_ros_arguments_are_applied(graph, tmp_path):
     file.write_text("/robot/renamed: {ros__parameters: {a: 1, b: 1}}\nnode: {ros__parameters: {b: 2}}\n")
     words = ["x", "--ros-args", "-r", "node:__node:=renamed", "-r", "__ns:=/robot", "--params-file", str(file)]
     words += ["--log-level", "other:=error", "--disable-rosout-logs"]
-    node, others = create_node(graph, NodeOptions(arguments=words, parameters={"b": 3, "c": 3}), "node")
+    node, other_options = create_node(graph, NodeOptions(arguments=words, parameters={"b": 3, "c": 3}), "node")
     assert node.get_fully_qualified_name() == "/robot/renamed"
     assert [node.declare_parameter(name, 0).value for name in "abc"] == [1, 1, 3]
     assert graph.get_logger("other").level is LogLevel.ERROR
     assert "/rosout" not in graph.topics()
-    assert others == ["x"]
+    assert other_options == ["x"]

@@ -23,8 +23,8 @@ from tests.places import TUTORIAL_PACKAGES
 TWO = robot(joint("a"), joint("b", xyz="1 0 0", parent="a_link"))
 MIMICS = robot(
     joint("master"),
-    joint("follower", more=mimic("master", "multiplier='-2' offset='0.5'")),
-    joint("second", more=mimic("follower")),
+    joint("follower", content=mimic("master", "multiplier='-2' offset='0.5'")),
+    joint("second", content=mimic("follower")),
 )
 
 angles = st.floats(-10, 10)
@@ -95,17 +95,17 @@ async def test_topics_have_expected_qos(harness, log):
     harness.robot_state_publisher(TWO)
     listener = harness.graph.create_node("listener")
     listener.create_subscription(JointState, "/joint_states", print, 1)
-    late = []
-    listener.create_subscription(String, "/robot_description", late.append, DESCRIPTION_QOS)
+    late_messages = []
+    listener.create_subscription(String, "/robot_description", late_messages.append, DESCRIPTION_QOS)
     sensor = listener.create_publisher(
         JointState, "/joint_states", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
     )
     await harness.graph.settle()
-    assert [message.data for message in late] == [TWO]
+    assert [message.data for message in late_messages] == [TWO]
     # The other subscriptions request reliable joint states, but robot_state_publisher matches best effort too.
     assert sensor.get_subscription_count() == 1
-    everywhere = ("/parameter_events", "/rosout")
-    assert {name: types for name, types in harness.graph.topics().items() if name not in everywhere} == {
+    topics_of_all_nodes = ("/parameter_events", "/rosout")
+    assert {name: types for name, types in harness.graph.topics().items() if name not in topics_of_all_nodes} == {
         "/joint_states": ["sensor_msgs/msg/JointState"],
         "/robot_description": ["std_msgs/msg/String"],
         "/tf": ["tf2_msgs/msg/TFMessage"],
@@ -182,8 +182,8 @@ class TestBadMessages:
     async def test_message_without_positions_is_ignored(self, harness, logged):
         harness.robot_state_publisher(TWO)
         await harness.send(JointState(name=["a", "b"]))
-        about = 'about joint(s) "a"(,...) whose position member was empty.'
-        assert logged("WARN") == [f"Robot state publisher ignored a JointState message {about}"]
+        upstream_text = 'about joint(s) "a"(,...) whose position member was empty.'
+        assert logged("WARN") == [f"Robot state publisher ignored a JointState message {upstream_text}"]
         assert harness.tf == []
 
     async def test_message_with_more_positions_than_names_is_ignored(self, harness, logged):
@@ -219,9 +219,9 @@ class TestThrottle:
         The x of a prismatic joint identifies each published move.
         """
         now = 0
-        for number, at in enumerate(times, 1):
-            await harness.clock.advance((at - now) / 1000)
-            now = at
+        for number, milliseconds in enumerate(times, 1):
+            await harness.clock.advance((milliseconds - now) / 1000)
+            now = milliseconds
             await harness.move({"a": float(number)})
         await harness.clock.advance(0.2)
         return [int(message.batch.poses[0, 0]) for message in harness.tf]
@@ -350,13 +350,13 @@ class TestStart:
     async def test_unreadable_description_is_rejected(self, harness, logged):
         with pytest.raises(LinkwrightError) as caught:
             harness.robot_state_publisher(robot(joint("a", parent="nowhere")))
-        first, *rest = caught.value.diagnostics
+        first, *other_diagnostics = caught.value.diagnostics
         assert (first.code, first.message) == (
             "NODE102",
             "Unable to initialize urdf::model from robot description",
         )
-        assert rest[0].code.startswith("URDF")
-        assert rest[0].span is not None
+        assert other_diagnostics[0].code.startswith("URDF")
+        assert other_diagnostics[0].span is not None
 
     async def test_file_name_as_description_is_rejected(self, harness):
         with pytest.raises(LinkwrightError) as caught:

@@ -208,12 +208,14 @@ async def test_buffer_server_reports_lookup_error(send_lookup_goal, send):
 
 
 async def test_buffer_server_waits_until_goal_timeout(harness, send_lookup_goal, send):
-    early, late = (send_lookup_goal(timeout, target_frame="map", source_frame="base") for timeout in (0.5, 5.0))
+    early_goal, late_goal = (
+        send_lookup_goal(timeout, target_frame="map", source_frame="base") for timeout in (0.5, 5.0)
+    )
     await harness.clock.advance(1.0)
     await send("map", "base", xyz=(1.0, 0.0, 0.0))
     await harness.clock.advance(0.1)
-    assert (await result_of(early)).error.error == 1
-    assert (await result_of(late)).transform.transform.translation.x == 1.0
+    assert (await result_of(early_goal)).error.error == 1
+    assert (await result_of(late_goal)).transform.transform.translation.x == 1.0
 
 
 async def test_buffer_server_goal_can_be_canceled(harness, send_lookup_goal):

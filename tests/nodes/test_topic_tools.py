@@ -63,15 +63,15 @@ async def test_relay_forwards_same_message_object(test):
 
 async def test_relay_adopts_qos_of_source_and_ends_with_it(test):
     start(test, Relay, "chatter", "copy")
-    lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    source = test.node.create_publisher(String, "chatter", lasting)
+    transient_local = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    source = test.node.create_publisher(String, "chatter", transient_local)
     source.publish(String(data="kept"))
     await test.settle()
     (copy,) = test.graph.get_publishers_info_by_topic("/copy")
     assert copy.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
-    late = test.record("/copy")
+    late_messages = test.record("/copy")
     await test.settle()
-    assert received_texts(late) == ["kept"]
+    assert received_texts(late_messages) == ["kept"]
     test.node.create_publisher(String, "chatter", QoSProfile(1, ReliabilityPolicy.BEST_EFFORT))
     await test.settle()
     (copy,) = test.graph.get_publishers_info_by_topic("/copy")
@@ -126,26 +126,26 @@ async def test_throttle_limits_bytes_per_window(test):
 
 async def test_drop_removes_first_messages_of_each_cycle(test):
     start(test, Drop, "chatter", "1", "3")
-    rest = test.record("/chatter_drop", String)
+    forwarded = test.record("/chatter_drop", String)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
     await publish_texts(test, "chatter", *"abcdefg")
-    assert received_texts(rest) == ["b", "c", "e", "f"]
+    assert received_texts(forwarded) == ["b", "c", "e", "f"]
 
 
 async def test_delay_keeps_order_and_spacing(test):
     start(test, Delay, "chatter", "0.5")
-    late = test.record("/chatter_delay", String)
+    delayed = test.record("/chatter_delay", String)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
     await publish_texts(test, "chatter", "a", "b")
     await test.advance(0.2)
     await publish_texts(test, "chatter", "c")
     await test.advance(0.29)
-    assert received_texts(late) == []
+    assert received_texts(delayed) == []
     await test.advance(0.5)
-    assert received_texts(late) == ["a", "b", "c"]
-    assert late.times == pytest.approx([0.5, 0.5, 0.7])
+    assert received_texts(delayed) == ["a", "b", "c"]
+    assert delayed.times == pytest.approx([0.5, 0.5, 0.7])
 
 
 async def test_mux_selects_adds_lists_and_deletes(test):

@@ -43,8 +43,8 @@ async def test_export_is_fetched_once_from_secret_url(served):
         assert (status, body[:4]) == (200, "glTF")
         assert "content-disposition: attachment" in head
         assert (await raw(served.viewer, ready["url"]))[0] == 404
-        for guess in ("/export/x/evil_name.glb", "/export/../server.py", "/export/%2e%2e/server.py", "/export/"):
-            assert (await raw(served.viewer, guess))[0] in (403, 404)
+        for guessed_path in ("/export/x/evil_name.glb", "/export/../server.py", "/export/%2e%2e/server.py", "/export/"):
+            assert (await raw(served.viewer, guessed_path))[0] in (403, 404)
 
 
 async def test_unfetched_exports_expire(served):

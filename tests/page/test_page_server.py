@@ -48,10 +48,10 @@ async def test_page_is_served_before_viewer_and_socket_waits_for_it():
 
 async def test_request_without_token_is_rejected_at_once():
     async with running_server() as (server, browser):
-        plain = server.url.partition("?")[0]
-        async with browser.get(f"{plain}ws") as response:
+        url_without_token = server.url.partition("?")[0]
+        async with browser.get(f"{url_without_token}ws") as response:
             assert response.status == 401
-        async with browser.post(f"{plain}recordings") as response:
+        async with browser.post(f"{url_without_token}recordings") as response:
             assert response.status == 401
 
 

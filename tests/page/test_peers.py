@@ -34,8 +34,8 @@ sys.stdin.read()
 class Connection(Transport):
     """The properties of an accepted connection in asyncio."""
 
-    def __init__(self, peer: Any, own: Any) -> None:
-        super().__init__({"peername": peer, "sockname": own})
+    def __init__(self, peer: Any, own_address: Any) -> None:
+        super().__init__({"peername": peer, "sockname": own_address})
 
 
 def accepted(listener: socket.socket) -> tuple[socket.socket, Connection]:
@@ -137,7 +137,7 @@ def test_lost_connection_is_rejected(transport: Connection | None) -> None:
 
 
 @pytest.mark.parametrize(
-    ("peer", "own", "is_local"),
+    ("peer", "own_address", "is_local"),
     [
         (("127.0.0.2", 1), ("127.0.0.1", 2), True),
         (("192.0.2.1", 1), ("192.0.2.1", 2), True),
@@ -147,5 +147,5 @@ def test_lost_connection_is_rejected(transport: Connection | None) -> None:
         (("fe80::1%eth0", 1, 0, 2), ("fe80::2%eth0", 2, 0, 2), False),
     ],
 )
-def test_loopback_and_own_addresses_are_local(peer: Any, own: Any, is_local: bool) -> None:
-    assert is_local_connection(Connection(peer, own)) is is_local
+def test_loopback_and_own_addresses_are_local(peer: Any, own_address: Any, is_local: bool) -> None:
+    assert is_local_connection(Connection(peer, own_address)) is is_local

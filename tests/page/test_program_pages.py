@@ -79,10 +79,10 @@ async def test_program_page_is_shown_until_program_ends(tmp_path):
 
 
 async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
-    asked = []
+    pause_requests = []
 
     def pause(must_pause: bool) -> bool:
-        asked.append(must_pause)
+        pause_requests.append(must_pause)
         return must_pause
 
     async with classroom(tmp_path) as world, page(world.viewer), program() as server, program() as other:
@@ -92,10 +92,10 @@ async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
         assert await other.embed(environment(world), "a page without a world")
         programs.pause_worlds()
         await eventually(lambda: programs.is_world_paused)
-        assert asked == [True]
+        assert pause_requests == [True]
         programs.resume_worlds()
         assert not programs.is_world_paused
-        await eventually(lambda: asked == [True, False])
+        await eventually(lambda: pause_requests == [True, False])
         programs.resume_worlds()
         programs.pause_worlds()
         await eventually(lambda: programs.is_world_paused)
@@ -104,14 +104,14 @@ async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
 
 
 async def test_a_world_resumes_when_the_page_that_paused_it_is_gone(tmp_path):
-    asked = []
+    pause_requests = []
     async with program() as server:
         async with classroom(tmp_path) as world, page(world.viewer):
             assert await server.embed(environment(world), "a world")
-            server.on_pause(lambda must_pause: asked.append(must_pause) or must_pause)
+            server.on_pause(lambda must_pause: pause_requests.append(must_pause) or must_pause)
             world.viewer._server.program_pages.pause_worlds()
-            await eventually(lambda: asked == [True])
-        await eventually(lambda: asked == [True, False])
+            await eventually(lambda: pause_requests == [True])
+        await eventually(lambda: pause_requests == [True, False])
 
 
 async def test_terminal_has_variable_with_page_address(tmp_path):

@@ -73,8 +73,8 @@ async def test_mesh_is_compressed_for_browser_that_accepts_it(served, robot):
     url, mesh = mesh_url(served.viewer), robot / "meshes" / "arm.stl"
     text = "facet normal 0 0 1\n" * 1000
     write(mesh, text)
-    _, plain, head = await raw(served.viewer, url)
-    assert plain == text
+    _, uncompressed, head = await raw(served.viewer, url)
+    assert uncompressed == text
     assert "content-encoding" not in head
     status, packed, head = await raw(served.viewer, url, Accept_Encoding="gzip, br")
     assert (status, len(packed) < len(text) / 10) == (200, True)
@@ -228,8 +228,8 @@ async def test_web_socket_of_other_origin_is_rejected(served):
             with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
                 await session.ws_connect(served.viewer.url.replace("/?", "/ws?"), origin=origin)
             assert caught.value.status == status
-        own = "http://" + urlsplit(served.viewer.url).netloc
-        async with session.ws_connect(served.viewer.url.replace("/?", "/ws?"), origin=own) as socket:
+        own_origin = "http://" + urlsplit(served.viewer.url).netloc
+        async with session.ws_connect(served.viewer.url.replace("/?", "/ws?"), origin=own_origin) as socket:
             assert (await socket.receive_json())["type"] == "hello"
 
 
@@ -290,18 +290,18 @@ def memory() -> int:
     return psutil.Process().memory_info().rss
 
 
-async def open_raw_connection(viewer, said: bytes = b"") -> asyncio.StreamWriter:
+async def open_raw_connection(viewer, request_text: bytes = b"") -> asyncio.StreamWriter:
     address = urlsplit(viewer.url)
     _, writer = await asyncio.open_connection(address.hostname, address.port)
-    writer.write(said)
+    writer.write(request_text)
     return writer
 
 
 async def expect_response(client) -> None:
     """Assert that the open page still receives responses."""
-    wanted = "tip" if client.messages and "base" in str(client.messages[-1]) else "base"
-    await client.set("global/Fixed Frame", wanted)
-    await client.until("property_changed", id="global/Fixed Frame", value=wanted)
+    expected_link = "tip" if client.messages and "base" in str(client.messages[-1]) else "base"
+    await client.set("global/Fixed Frame", expected_link)
+    await client.until("property_changed", id="global/Fixed Frame", value=expected_link)
 
 
 async def test_thousand_idle_connections_do_not_disturb_pages(served):
@@ -389,8 +389,8 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
         await expect_response(client)
         assert len(server._page_contents) == 1
         waiting = [
-            stranger._transport.get_write_buffer_size()
-            for stranger in server._admission._unadmitted_connections.values()
+            connection._transport.get_write_buffer_size()
+            for connection in server._admission._unadmitted_connections.values()
         ]
         assert len(waiting) > MAX_CONNECTIONS - 5
         assert max(waiting) < 256 << 10

@@ -143,9 +143,9 @@ async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
     """The server knows less about a client that acknowledges nothing, such as another program."""
     async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT) as url:
         async with watching(url, answers=answers) as watcher:
-            began = watcher.now()
+            start_s = watcher.now()
             await publish_all(world, seconds)
-        settled = [delay for at, delay in watcher.delays if at - began > 2.0]
+        settled = [delay for time_s, delay in watcher.delays if time_s - start_s > 2.0]
         assert len(settled) > 10
         assert max(settled) < latest
         steps = [fields["step"] for fields in watcher.contents_of_kind("cloud_points")]

@@ -218,23 +218,31 @@ async def test_requests_for_unknown_display_are_ignored():
         assert response["text"] is None
         await client.send("request_description", display="display-99")
         await client.send("request_inertia", display="display-99")
-        rest = await client.drain()
-    assert not [message for message in rest if isinstance(message, dict) and message["type"] == "description"]
+        remaining_messages = await client.drain()
+    assert not [
+        message for message in remaining_messages if isinstance(message, dict) and message["type"] == "description"
+    ]
 
 
 async def test_page_with_own_displays_receives_only_their_descriptions(files):
     async with open_world() as world, page(world.viewer) as shared:
         describe(world, files)
         response = await shared.until("description_changed")
-        async with page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as alone:
-            mine = await alone.until("description_changed")
-            assert mine["display"] != response["display"]
-            await alone.send("request_description", display=response["display"])  # this page does not have that display
-            details = await request(alone, "request_description", "description", display=mine["display"])
-            assert details["display"] == mine["display"]
+        async with page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as own_client:
+            own_description = await own_client.until("description_changed")
+            assert own_description["display"] != response["display"]
+            await own_client.send(
+                "request_description", display=response["display"]
+            )  # this page does not have that display
+            details = await request(
+                own_client, "request_description", "description", display=own_description["display"]
+            )
+            assert details["display"] == own_description["display"]
             describe(world, files)
-            rest = await shared.drain()
+            remaining_messages = await shared.drain()
     kinds = [
-        message["display"] for message in rest if isinstance(message, dict) and "description_changed" in message["type"]
+        message["display"]
+        for message in remaining_messages
+        if isinstance(message, dict) and "description_changed" in message["type"]
     ]
     assert set(kinds) <= {response["display"]}

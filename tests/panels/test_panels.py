@@ -73,11 +73,11 @@ def test_closed_panel_is_hidden_in_window_state_and_keeps_entry():
     before = config.text()
     assert config.panels.show(["displays"])
     assert changes(config, before) == []
-    again = RvizConfig.parse(config.text())
-    assert again.panels.shown == ["displays"]
-    assert not again.panels.show(["displays"])
-    assert again.panels.show(["displays", "views"])
-    assert (again.panels.shown, again.text()) == (["displays", "views"], before)
+    reread = RvizConfig.parse(config.text())
+    assert reread.panels.shown == ["displays"]
+    assert not reread.panels.show(["displays"])
+    assert reread.panels.show(["displays", "views"])
+    assert (reread.panels.shown, reread.text()) == (["displays", "views"], before)
 
 
 def test_closed_panel_without_window_state_returns_to_its_position():
@@ -158,8 +158,8 @@ async def test_panel_changes_do_not_affect_other_pages(tmp_path):
         await client.send("show_panels", shown=[])
         await other.until("configuration", unsaved=True)
         assert "panels" not in [message["type"] for message in await other.drain() if isinstance(message, dict)]
-        async with page(world.viewer) as late:
-            assert (await late.opened())["panels"]["shown"] == []
+        async with page(world.viewer) as late_client:
+            assert (await late_client.opened())["panels"]["shown"] == []
 
 
 async def test_panel_changes_without_file_are_not_unsaved_edits(tmp_path):

@@ -120,12 +120,12 @@ async def test_pages_share_recording_that_outlives_its_page():
             await world.settle()
             await asyncio.sleep(2.0)
             assert (await other.until("recording_state"))["path"] == recording_state["path"]
-        async with page(world.viewer) as late:
-            assert (await late.until("recording_state"))["path"] == state["path"]
+        async with page(world.viewer) as late_client:
+            assert (await late_client.until("recording_state"))["path"] == state["path"]
             world.move_arm(2.0)
             await world.settle()
-            await late.send("stop_recording")
-            assert [file["path"] for file in (await wait_for_end(late))["files"]] == [state["path"]]
+            await late_client.send("stop_recording")
+            assert [file["path"] for file in (await wait_for_end(late_client))["files"]] == [state["path"]]
 
 
 @skipping
@@ -254,20 +254,20 @@ async def test_history_and_part_of_history_are_saved():
     async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
         await client.until("recording_state")
         world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
-        between = await publish_positions(world)
-        (whole,) = (await saved(client))["files"]
-        with BagReader(whole["path"]) as bag:
+        times_between = await publish_positions(world)
+        (whole_file,) = (await saved(client))["files"]
+        with BagReader(whole_file["path"]) as bag:
             assert len(list(bag.messages([TF]))) == 5
-        part = (await saved(client, between[1], between[3]))["files"][0]
-        assert part["path"] != whole["path"]
+        part = (await saved(client, times_between[1], times_between[3]))["files"][0]
+        assert part["path"] != whole_file["path"]
         with BagReader(part["path"]) as bag:
             stamps = [stamp / 1e9 for _, stamp, _ in bag.messages()]
-            assert between[1] - 1e-6 <= stamps[0] <= stamps[-1] <= between[3]
+            assert times_between[1] - 1e-6 <= stamps[0] <= stamps[-1] <= times_between[3]
             assert len(list(bag.messages(["/tf_static"]))) == 1, "earlier static transforms are included"
-            later = [stamp for _, stamp, _ in bag.messages([TF]) if stamp / 1e9 > between[1] + 1e-6]
+            later = [stamp for _, stamp, _ in bag.messages([TF]) if stamp / 1e9 > times_between[1] + 1e-6]
             assert len(later) == 2
-        nothing = await saved(client, 1.0, 2.0)
-        assert "no messages arrived in that time" in nothing["problem"]
+        empty_result = await saved(client, 1.0, 2.0)
+        assert "no messages arrived in that time" in empty_result["problem"]
 
 
 @skipping

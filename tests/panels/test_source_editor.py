@@ -103,24 +103,24 @@ async def test_folder_is_listed_and_file_is_created(file: Path) -> None:
         created = await request(client, "create_source_file", "source_file_written", number=1, path=str(new))
         assert created["refusal"] is None
         assert content(new) == b""
-        again = await request(client, "create_source_file", "source_file_written", number=2, path=str(new))
-        assert "already exists" in again["refusal"]["message"]
+        second_reply = await request(client, "create_source_file", "source_file_written", number=2, path=str(new))
+        assert "already exists" in second_reply["refusal"]["message"]
 
 
 async def test_missing_file_is_created_with_first_text(file: Path) -> None:
     new, other = (file.parents[1] / "launch" / name for name in ("new.launch.py", "other.launch.py"))
     async with open_world() as world, page(world.viewer) as client:
         await open_file(world, client, file)
-        begun = await request(client, "request_source_file", "source_file", path=str(new))
-        assert (begun["text"], begun["is_new"]) == (None, True)
+        first_text = await request(client, "request_source_file", "source_file", path=str(new))
+        assert (first_text["text"], first_text["is_new"]) == (None, True)
         assert not new.parent.exists()
-        written = await save(client, new, begun["version"], "x = 1\n")
+        written = await save(client, new, first_text["version"], "x = 1\n")
         assert (written["refusal"], new.read_text()) == (None, "x = 1\n")
         written = await save(client, new, written["version"], "x = 2\n")
         assert (written["refusal"], new.read_text()) == (None, "x = 2\n")
-        begun = await request(client, "request_source_file", "source_file", path=str(other))
+        first_text = await request(client, "request_source_file", "source_file", path=str(other))
         write(other, "of another program\n")
-        written = await save(client, other, begun["version"], "mine\n")
+        written = await save(client, other, first_text["version"], "mine\n")
         assert written["refusal"] is not None
         assert other.read_text() == "of another program\n"
 

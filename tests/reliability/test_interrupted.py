@@ -64,10 +64,10 @@ def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Mach
         running = machine.start_handling_interrupts("launch", launch, "--no-open")
         time.sleep(delay)
         status = running.interrupt()
-        where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
-        assert status == 130, where
-        assert not re.search(r"^Traceback", running.text, re.MULTILINE), where
-        wait_until(lambda running=running: not running.left_behind(), what=where)
+        failure_text = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
+        assert status == 130, failure_text
+        assert not re.search(r"^Traceback", running.text, re.MULTILINE), failure_text
+        wait_until(lambda running=running: not running.left_behind(), what=failure_text)
 
 
 @pytest.mark.slow
@@ -196,9 +196,9 @@ def test_topic_echo_interrupted_during_startup_exits_with_130(machine: Machine) 
         running = machine.start_handling_interrupts("topic", "echo", "/chatter", "std_msgs/msg/Int32")
         time.sleep(delay)
         status = running.interrupt()
-        where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
-        assert status == 130, where
-        assert not traceback_in(running.text), where
+        failure_text = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
+        assert status == 130, failure_text
+        assert not traceback_in(running.text), failure_text
 
 
 def test_interrupted_recording_is_complete(machine: Machine) -> None:

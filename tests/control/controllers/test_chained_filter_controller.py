@@ -66,12 +66,15 @@ async def test_states_are_filtered_and_exported(bench):
 
 async def test_each_state_can_have_its_own_chain(bench):
     bench.joint("wheel", position=1.0, velocity=1.0)
-    own = {**MEAN, "params": {"number_of_observations": 1}}
+    single_value_mean = {**MEAN, "params": {"number_of_observations": 1}}
     controller = bench.start(
         ChainedFilterController,
         input_interfaces=["wheel/position", "wheel/velocity"],
         output_interfaces=["position", "velocity"],
-        **{"wheel/position": {"filter_chain": {"filter1": MEAN}}, "wheel/velocity": {"filter_chain": {"filter1": own}}},
+        **{
+            "wheel/position": {"filter_chain": {"filter1": MEAN}},
+            "wheel/velocity": {"filter_chain": {"filter1": single_value_mean}},
+        },
     )
     await bench.step(controller)
     bench.states["wheel/position"].value = bench.states["wheel/velocity"].value = 3.0

@@ -106,12 +106,12 @@ async def test_new_goal_preempts_previous_goal(bench):
 
 async def test_goal_is_rejected_if_not_a_number_or_inactive(bench):
     fingers = Gripper(bench)
-    wrong = fingers.send_goal(nan)
+    invalid_goal = fingers.send_goal(nan)
     await fingers.run(0.02)
     fingers.controller.on_deactivate()
     rejected = fingers.send_goal(0.1)
     await bench.graph.settle()
-    assert (wrong.accepted, rejected.accepted) == (False, False)
+    assert (invalid_goal.accepted, rejected.accepted) == (False, False)
 
 
 async def test_effort_follows_error_up_to_maximum_of_goal(bench):
@@ -150,10 +150,10 @@ async def test_parallel_gripper_forwards_maximum_effort_and_velocity(bench):
 
     await fingers.run(0.02)
     assert limits() == (10.0, 0.1)
-    goal, wrong = send_goal([0.02], [0.3], [5.0]), send_goal([], [], [])
+    goal, invalid_goal = send_goal([0.02], [0.3], [5.0]), send_goal([], [], [])
     await fingers.run(0.5)
     assert limits() == (5.0, 0.3)
-    assert (goal.status, wrong.accepted) == (SUCCEEDED, False)
+    assert (goal.status, invalid_goal.accepted) == (SUCCEEDED, False)
     assert goal.result.state.name == ["finger"]
     assert goal.result.state.effort[0] == 5.0
     assert "Received action goal with wrong number of position values, expects 1, got 0" in [

@@ -335,7 +335,7 @@ async def test_goal_overrides_tolerances(bench):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "message"),
+    ("tolerance_fields", "message"),
     [
         (
             tolerance("knee", 1.0),
@@ -347,10 +347,10 @@ async def test_goal_overrides_tolerances(bench):
         ),
     ],
 )
-async def test_invalid_goal_tolerances_keep_controller_tolerances(bench, wrong, message):
+async def test_invalid_goal_tolerances_keep_controller_tolerances(bench, tolerance_fields, message):
     arm = Arm(bench, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
-    goal = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
+    goal = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), tolerance_fields])
     await arm.run(0.5)
     assert goal.status == ABORTED
     assert message in arm.log_texts()

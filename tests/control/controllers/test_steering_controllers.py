@@ -101,10 +101,10 @@ async def test_bicycle_wheel_commands(bench):
 
 @each_controller
 @pytest.mark.parametrize(
-    "how", [{}, {"position_feedback": True}, {"open_loop": True}], ids=["velocity", "position", "open"]
+    "feedback", [{}, {"position_feedback": True}, {"open_loop": True}], ids=["velocity", "position", "open"]
 )
-async def test_odometry_matches_driven_arc(bench, kind, sizes, how):
-    controller = start_vehicle(bench, kind, sizes, reference_timeout=60.0, **how)
+async def test_odometry_matches_driven_arc(bench, kind, sizes, feedback):
+    controller = start_vehicle(bench, kind, sizes, reference_timeout=60.0, **feedback)
     odometry = bench.record("nav_msgs/msg/Odometry", f"/{CONTROLLER_NAME}/odometry")
     transforms = bench.record("tf2_msgs/msg/TFMessage", f"/{CONTROLLER_NAME}/tf_odometry")
     publish_command(bench, 0.5, 0.2)

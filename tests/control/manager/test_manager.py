@@ -213,13 +213,13 @@ async def test_controller_that_raises_is_deactivated_and_joints_stop(create_mana
     assert errors[1] == "Deactivating controllers : [ low high ] as their update resulted in an error!"
 
 
-@pytest.mark.parametrize("wrong", [nan, inf])
-async def test_nan_commands_do_not_reach_hardware(create_manager, logged, wrong):
+@pytest.mark.parametrize("invalid_value", [nan, inf])
+async def test_nan_commands_do_not_reach_hardware(create_manager, logged, invalid_value):
     controller_manager = create_manager()
     start_controllers(controller_manager, "low")
     controller_manager.switch(["low"], [], STRICT)
     controller_manager.cycle(1, 0.01)
-    controller_manager.controllers["low"].controller.value = wrong
+    controller_manager.controllers["low"].controller.value = invalid_value
     controller_manager.cycle(2, 0.01)
     assert command_value(controller_manager, "hip/velocity") == 0.0
     assert "'hip/velocity' is not a number" in logged("ERROR")[0]

@@ -166,12 +166,14 @@ async def test_joy_linux_accepts_device_path(tmp_path, harness, joy_messages, st
     os.close(joystick.file)
 
 
-@pytest.mark.parametrize("wrong", [{"deadzone": 1.5}, {"autorepeat_rate": -1.0}, {"coalesce_interval_ms": -1}])
-async def test_out_of_range_parameters_are_rejected(harness, wrong):
+@pytest.mark.parametrize(
+    "invalid_parameters", [{"deadzone": 1.5}, {"autorepeat_rate": -1.0}, {"coalesce_interval_ms": -1}]
+)
+async def test_out_of_range_parameters_are_rejected(harness, invalid_parameters):
     with pytest.raises(LinkwrightError) as error:
-        JoyNode(harness.graph, NodeOptions(parameters=wrong))
+        JoyNode(harness.graph, NodeOptions(parameters=invalid_parameters))
     assert error.value.diagnostics[0].code == "NODE903"
-    assert next(iter(wrong)) in error.value.diagnostics[0].message
+    assert next(iter(invalid_parameters)) in error.value.diagnostics[0].message
 
 
 # --- teleop_twist_joy -----------------------------------------------------------------------------------------------

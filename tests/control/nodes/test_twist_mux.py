@@ -59,8 +59,8 @@ def mux_harness(harness):
     return MuxHarness(harness)
 
 
-def start_mux(harness, **more):
-    return TwistMux(harness.graph, NodeOptions(parameters={**PARAMETERS, **more}))
+def start_mux(harness, **parameters):
+    return TwistMux(harness.graph, NodeOptions(parameters={**PARAMETERS, **parameters}))
 
 
 async def test_highest_priority_topic_is_forwarded_until_timeout(harness, mux_harness):

@@ -100,11 +100,11 @@ def test_workspace_is_package_repository_or_src_parent(tmp_path: Path) -> None:
     main = folder / "robot.urdf"
     main.write_text("")
     assert Workspace(main).folder == (tmp_path / "ws").resolve()
-    lone = tmp_path / "lone" / "urdf"
-    lone.mkdir(parents=True)
-    assert Workspace(lone / "robot.urdf").folder == lone.resolve()
+    lone_folder = tmp_path / "lone" / "urdf"
+    lone_folder.mkdir(parents=True)
+    assert Workspace(lone_folder / "robot.urdf").folder == lone_folder.resolve()
     (tmp_path / "lone" / "package.xml").write_text("")
-    assert Workspace(lone / "robot.urdf").folder == (tmp_path / "lone").resolve()
+    assert Workspace(lone_folder / "robot.urdf").folder == (tmp_path / "lone").resolve()
 
 
 def test_files_outside_workspace_or_installed_are_rejected(tmp_path: Path) -> None:
@@ -121,9 +121,9 @@ def test_files_outside_workspace_or_installed_are_rejected(tmp_path: Path) -> No
     installed.parent.mkdir(parents=True)
     installed.write_text("")
     (installed.parents[1] / "ament_index").mkdir()
-    for path, why in ((other, "outside the workspace"), (ours, "this program"), (installed, "installed")):
+    for path, reason in ((other, "outside the workspace"), (ours, "this program"), (installed, "installed")):
         refusal = workspace.refusal(os.path.realpath(path))
         assert refusal is not None
         assert refusal.code == "EDIT106"
         assert path.name in refusal.message
-        assert why in refusal.message
+        assert reason in refusal.message

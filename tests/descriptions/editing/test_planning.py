@@ -212,8 +212,8 @@ def test_edit_of_repeated_macro_text_is_rejected_with_side_effects(tmp_path: Pat
 def test_rejection_names_text_with_fewest_side_effects(tmp_path: Path) -> None:
     """The text of the sum in the macro is named, because it affects fewer joints than the shared length."""
     joint = '<origin xyz="${lift} 0 0"/><parent link="base"/><child link="tip"/>'
-    more = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
-    text = WHEELS.replace("</robot>", more)
+    tip_joint = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
+    text = WHEELS.replace("</robot>", tip_joint)
     diagnostic = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
     assert "joint 'right_joint'" in diagnostic.message
     assert "far" not in diagnostic.message
@@ -300,12 +300,12 @@ def test_included_file_is_edited_only_if_writable(tmp_path: Path) -> None:
     part = os.path.realpath(tmp_path / "part.xacro")
     assert list(plan_edit(examine(path), request).texts) == [part]
 
-    why = Diagnostic("EDIT106", "no")
-    plan = plan_edit(examine(path), request, lambda file: why if file == part else None)
+    rejection = Diagnostic("EDIT106", "no")
+    plan = plan_edit(examine(path), request, lambda file: rejection if file == part else None)
     assert changed_lines(text, *plan.texts.values()) == ['<origin xyz="0 0 ${h + 0.1}"/>']
     with pytest.raises(EditRefusedError) as caught:
-        plan_edit(examine(path), request, lambda _: why)
-    assert caught.value.diagnostic is why
+        plan_edit(examine(path), request, lambda _: rejection)
+    assert caught.value.diagnostic is rejection
 
 
 def test_missing_elements_and_infinite_values_are_rejected(tmp_path: Path) -> None:

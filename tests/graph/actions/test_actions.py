@@ -224,17 +224,17 @@ async def test_result_of_wrong_type_is_reported(harness, log):
 
 
 async def test_result_passed_to_succeed_is_sent_immediately(harness):
-    gate = asyncio.Event()
+    may_finish = asyncio.Event()
 
     async def work(goal):
         goal.succeed(Fibonacci.Result(sequence=[3]))
-        await gate.wait()
+        await may_finish.wait()
         return Fibonacci.Result(sequence=[4])
 
     harness.serve(work)
     response = await (await harness.send()).get_result_async()
     assert list(response.result.sequence) == [3]
-    gate.set()
+    may_finish.set()
     await harness.graph.settle()
 
 

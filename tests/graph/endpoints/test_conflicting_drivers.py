@@ -97,9 +97,9 @@ def test_time_jump_back_resets_dispute():
 class KnownPublishers:
     """A graph with publishers of named nodes."""
 
-    def __init__(self, nodes: dict[bytes, str | None], twice: str = "") -> None:
+    def __init__(self, nodes: dict[bytes, str | None], duplicate_name: str = "") -> None:
         self._nodes = nodes
-        self._names = [*{name for name in nodes.values() if name}, *([twice] if twice else [])]
+        self._names = [*{name for name in nodes.values() if name}, *([duplicate_name] if duplicate_name else [])]
 
     def endpoints(self) -> list[EndpointInfo]:
         kind, qos = EndpointKind.PUBLISHER, QoSProfile(10)
@@ -142,7 +142,7 @@ def test_warning_names_nodes_and_suggests_fixes(message_type):
 
 def test_dispute_compares_nodes_instead_of_publishers():
     assert warnings_about(KnownPublishers({b"1": "keys", b"2": "keys"})) == []
-    (text,) = warnings_about(KnownPublishers({b"1": "keys", b"2": "keys"}, twice="keys"))
+    (text,) = warnings_about(KnownPublishers({b"1": "keys", b"2": "keys"}, duplicate_name="keys"))
     assert text.startswith("several nodes drive the robot: '/keys', '/keys' send commands on")
 
 

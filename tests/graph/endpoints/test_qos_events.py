@@ -68,26 +68,26 @@ async def test_matched_events_count_endpoints(graph, node):
 
 
 async def test_deadline_missed_events_are_sent_to_both_sides(graph, node, clock):
-    offered, requested = [], []
+    offered_events, requested_events = [], []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     publisher = node.create_publisher(
-        String, "topic", qos, event_callbacks=PublisherEventCallbacks(deadline=offered.append)
+        String, "topic", qos, event_callbacks=PublisherEventCallbacks(deadline=offered_events.append)
     )
     node.create_subscription(
-        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=requested.append)
+        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=requested_events.append)
     )
     await clock.advance(5.0)
-    assert (offered, requested) == ([], [])  # the deadline begins with the first message, as in DDS
+    assert (offered_events, requested_events) == ([], [])  # the deadline begins with the first message, as in DDS
     for _ in range(10):
         publisher.publish(String())
         await clock.advance(0.9)
-    assert (offered, requested) == ([], [])
+    assert (offered_events, requested_events) == ([], [])
     await clock.advance(2.5)
-    assert [event.total_count for event in offered] == [1, 2, 3]
-    assert [event.total_count for event in requested] == [1, 2, 3]
+    assert [event.total_count for event in offered_events] == [1, 2, 3]
+    assert [event.total_count for event in requested_events] == [1, 2, 3]
     node.destroy_node()
     await clock.advance(10.0)
-    assert len(offered) == 3
+    assert len(offered_events) == 3
 
 
 async def test_remote_messages_satisfy_deadline(node, clock):

@@ -91,11 +91,11 @@ async def test_introspection_can_be_enabled_on_service_only(graph, service, clie
 
 
 async def test_service_events_use_given_clock(graph, clock, service, client, events):
-    own = Clock(timebase=graph.timebase)
-    service.configure_introspection(own, SERVICES_QOS, METADATA)
+    clock_of_events = Clock(timebase=graph.timebase)
+    service.configure_introspection(clock_of_events, SERVICES_QOS, METADATA)
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
-    assert events[0].info.stamp == own.now().to_msg()
+    assert events[0].info.stamp == clock_of_events.now().to_msg()
 
 
 async def test_introspection_state_can_change_and_be_disabled(graph, service, client, events):

@@ -45,17 +45,17 @@ async def test_concurrent_requests_receive_matching_responses(graph, nodes):
 
 async def test_service_callback_can_be_coroutine(graph, nodes):
     server, user = nodes
-    gate = asyncio.Event()
+    may_finish = asyncio.Event()
 
     async def slow(request, response):
-        await gate.wait()
+        await may_finish.wait()
         return add(request, response)
 
     server.create_service(AddTwoInts, "add", slow)
     future = user.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
     await graph.settle()
     assert not future.done()
-    gate.set()
+    may_finish.set()
     assert (await future).sum == 2
 
 

@@ -131,15 +131,15 @@ async def test_failing_callback_is_logged_and_others_continue(graph, log):
 
 async def test_queue_keeps_last_messages_up_to_depth(graph):
     node = graph.create_node("node")
-    last, everything = [], []
-    node.create_subscription(String, "topic", last.append, 2)
-    node.create_subscription(String, "topic", everything.append, QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL))
+    last_texts, all_texts = [], []
+    node.create_subscription(String, "topic", last_texts.append, 2)
+    node.create_subscription(String, "topic", all_texts.append, QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL))
     publisher = node.create_publisher(String, "topic", 1)
     for number in range(5):
         publisher.publish(String(data=str(number)))
     await graph.settle()
-    assert texts(last) == ["3", "4"]
-    assert texts(everything) == ["0", "1", "2", "3", "4"]
+    assert texts(last_texts) == ["3", "4"]
+    assert texts(all_texts) == ["0", "1", "2", "3", "4"]
 
 
 async def test_late_subscription_receives_latched_messages(graph):

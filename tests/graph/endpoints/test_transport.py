@@ -77,10 +77,10 @@ async def test_transport_mirrors_nodes_and_endpoints(graph, transport):
     node.create_publisher(String, "topic", 1)
     graph.attach(transport)
     assert transport.open == ["early", (EndpointKind.PUBLISHER, "/topic")]
-    late = graph.create_node("late")
-    late.create_subscription(String, "topic", print, 1)
-    late.create_service(Trigger, "trigger", print)
-    client = late.create_client(Trigger, "trigger")
+    late_node = graph.create_node("late")
+    late_node.create_subscription(String, "topic", print, 1)
+    late_node.create_service(Trigger, "trigger", print)
+    client = late_node.create_client(Trigger, "trigger")
     assert transport.open[2:] == [
         "late",
         (EndpointKind.SUBSCRIPTION, "/topic"),
@@ -257,7 +257,7 @@ async def test_message_info_is_passed_to_callbacks_that_accept_it(graph, clock):
 async def test_requests_use_transport_without_local_server(graph):
     node = graph.create_node("node")
     client = node.create_client(Trigger, "trigger")
-    early = client.call_async(Trigger.Request())
+    early_future = client.call_async(Trigger.Request())
     responses, forgotten = [], []
 
     class RemoteServer:
@@ -268,12 +268,12 @@ async def test_requests_use_transport_without_local_server(graph):
     assert not client.service_is_ready()
     client.set_remote_service(RemoteServer())
     assert client.service_is_ready()
-    late = client.call_async(Trigger.Request())
+    late_future = client.call_async(Trigger.Request())
     assert len(responses) == 2
     for number, response in enumerate(responses):
         response(Trigger.Response(message=str(number)))
         response(Trigger.Response(message="again"))
-    assert ((await early).message, (await late).message) == ("0", "1")
+    assert ((await early_future).message, (await late_future).message) == ("0", "1")
     given_up = client.call_async(Trigger.Request())
     client.remove_pending_request(given_up)
     assert len(forgotten) == 1
@@ -323,10 +323,18 @@ async def test_graph_queries_include_local_and_remote_endpoints(graph, transport
     ]
     assert (node.count_publishers("topic"), node.count_subscribers("topic")) == (2, 1)
     assert (node.count_services("trigger"), node.count_clients("trigger")) == (1, 1)
-    mine, theirs = node.get_publishers_info_by_topic("topic")
-    assert (mine.node_name, mine.topic_type, mine.qos_profile.depth) == ("here", "std_msgs/msg/String", 3)
-    assert (theirs.node_namespace, theirs.endpoint_gid, theirs.topic_type_hash) == ("/far", list(range(16)), "RIHS01_x")
-    assert theirs.endpoint_type.name == "PUBLISHER"
+    local_info, remote_info = node.get_publishers_info_by_topic("topic")
+    assert (local_info.node_name, local_info.topic_type, local_info.qos_profile.depth) == (
+        "here",
+        "std_msgs/msg/String",
+        3,
+    )
+    assert (remote_info.node_namespace, remote_info.endpoint_gid, remote_info.topic_type_hash) == (
+        "/far",
+        list(range(16)),
+        "RIHS01_x",
+    )
+    assert remote_info.endpoint_type.name == "PUBLISHER"
     with pytest.raises(RuntimeError, match="'nobody' in namespace '/'"):
         node.get_publisher_names_and_types_by_node("nobody", "/")
 

@@ -275,16 +275,16 @@ class TestShutdown:
         executor.spin()
 
     def test_shutdown_waits_for_running_callback(self, node, executor):
-        begun, may_end, ended = threading.Event(), threading.Event(), []
+        has_begun, may_end, ended = threading.Event(), threading.Event(), []
 
         def work():
-            begun.set()
+            has_begun.set()
             assert may_end.wait(SECONDS)
             ended.append(1)
 
         node.create_timer(0.01, work)
         thread = spin_in_thread(executor)
-        assert begun.wait(SECONDS)
+        assert has_begun.wait(SECONDS)
         assert executor.shutdown(timeout_sec=0.01) is False
         threading.Timer(0.05, may_end.set).start()
         assert executor.shutdown() is True
@@ -481,9 +481,9 @@ class TestGroups:
             await future
             order.append("ends")
 
-        guard = node.create_guard_condition(first, callback_group=group)
+        guard_condition = node.create_guard_condition(first, callback_group=group)
         other = node.create_guard_condition(lambda: order.append("other"), callback_group=group)
-        guard.trigger()
+        guard_condition.trigger()
         other.trigger()
         for _ in range(3):
             executor.spin_once(timeout_sec=0)
@@ -514,8 +514,8 @@ class TestGroups:
                 return self.allowed and super().can_execute(entity)
 
         group, calls = Every(), []
-        guard = node.create_guard_condition(lambda: calls.append(1), callback_group=group)
-        guard.trigger()
+        guard_condition = node.create_guard_condition(lambda: calls.append(1), callback_group=group)
+        guard_condition.trigger()
         executor.spin_once(timeout_sec=0)
         assert calls == []
         group.allowed = True

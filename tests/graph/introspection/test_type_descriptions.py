@@ -95,12 +95,12 @@ async def test_humble_nodes_have_no_type_description_service(
     assert not node.has_parameter("start_type_description_service")
 
 
-@pytest.mark.parametrize(("distribution", "wanted"), [("humble", True), ("jazzy", False)])
+@pytest.mark.parametrize(("distribution", "is_enabled"), [("humble", True), ("jazzy", False)])
 async def test_parameter_enables_type_description_service(
-    graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str, wanted: bool
+    graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str, is_enabled: bool
 ) -> None:
     monkeypatch.setenv("ROS_DISTRO", distribution)
-    node = graph.create_node("node", parameters={"start_type_description_service": wanted})
-    assert ("/node/get_type_description" in dict(node.get_service_names_and_types())) is wanted
-    assert node.get_parameter("start_type_description_service").value is wanted
+    node = graph.create_node("node", parameters={"start_type_description_service": is_enabled})
+    assert ("/node/get_type_description" in dict(node.get_service_names_and_types())) is is_enabled
+    assert node.get_parameter("start_type_description_service").value is is_enabled
     assert node.describe_parameter("start_type_description_service").read_only

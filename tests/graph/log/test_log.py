@@ -226,12 +226,12 @@ def test_ros_arguments_select_log_outputs_and_levels(monkeypatch, tmp_path, caps
         LogLevel.ERROR,
         LogLevel.INFO,
     )
-    loud = set_up(
+    debug_log = set_up(
         parse(["--ros-args", "--disable-external-lib-logs", "--disable-rosout-logs", "--log-level", "debug"]), "talker"
     )
-    loud.sink(RECORD)
+    debug_log.sink(RECORD)
     assert "hello" in capsys.readouterr().err
-    assert (loud.file, loud.rosout, loud.levels.effective_level("x")) == (None, False, LogLevel.DEBUG)
+    assert (debug_log.file, debug_log.rosout, debug_log.levels.effective_level("x")) == (None, False, LogLevel.DEBUG)
 
 
 async def test_logger_level_services_set_and_get_levels(graph):

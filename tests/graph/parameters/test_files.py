@@ -113,12 +113,12 @@ def test_node_name_wildcards_match(pattern, fits, misses):
 def test_patterns_apply_in_order_of_appearance():
     rules = read("/**: {ros__parameters: {a: 1, b: 1}}\n/node: {ros__parameters: {a: 2}}")
     assert rules.for_node("/node") == {"a": 2, "b": 1}
-    more = read("/**: {ros__parameters: {a: 3}}")
-    rules.add(more)
+    later_rules = read("/**: {ros__parameters: {a: 3}}")
+    rules.add(later_rules)
     assert rules.for_node("/node") == {"a": 2, "b": 1}
     assert rules.for_node("/other") == {"a": 3, "b": 1}
     other = read("/node: {ros__parameters: {a: 2}}")
-    other.add(more)
+    other.add(later_rules)
     assert other.for_node("/node") == {"a": 3}
 
 

@@ -161,7 +161,7 @@ async def test_parameter_event_handler_reports_single_parameters(graph, server):
         "rate", "server", lambda parameter: messages.append(("rate", parameter.value.integer_value))
     )
     handler.add_parameter_callback("rate", "/other", lambda parameter: messages.append(("other", parameter)))
-    own = handler.add_parameter_callback(
+    callback_handle = handler.add_parameter_callback(
         "mine", "", lambda parameter: messages.append(("mine", parameter.value.bool_value))
     )
     event = handler.add_parameter_event_callback(lambda parameter_event: messages.append(parameter_event.node))
@@ -170,7 +170,7 @@ async def test_parameter_event_handler_reports_single_parameters(graph, server):
     await graph.settle()
     assert messages == [("rate", 3), "/robot/server", ("mine", True), "/robot/watcher"]
     handler.remove_parameter_callback(rate)
-    handler.remove_parameter_callback(own)
+    handler.remove_parameter_callback(callback_handle)
     handler.remove_parameter_event_callback(event)
     for remove, handle in ((handler.remove_parameter_callback, rate), (handler.remove_parameter_event_callback, event)):
         with pytest.raises(RuntimeError, match="Callback doesn't exist"):

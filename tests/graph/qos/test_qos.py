@@ -161,9 +161,9 @@ class TestCompatibility:
         ("reliability", "durability"), [*itertools.product((RELIABLE, BEST_EFFORT), (VOLATILE, TRANSIENT_LOCAL))]
     )
     def test_best_available_profile_is_compatible(self, reliability, durability):
-        there = profile(reliability=reliability, durability=durability, deadline=seconds(3))
-        chosen = best_available(BEST_AVAILABLE_QOS, [there], publisher=False)
+        remote_profile = profile(reliability=reliability, durability=durability, deadline=seconds(3))
+        chosen = best_available(BEST_AVAILABLE_QOS, [remote_profile], publisher=False)
         assert (chosen.reliability, chosen.durability, chosen.deadline) == (reliability, durability, seconds(3))
-        assert incompatible_policies(there, chosen) == []
-        offered = best_available(BEST_AVAILABLE_QOS, [there], publisher=True)
-        assert incompatible_policies(offered, there) == []
+        assert incompatible_policies(remote_profile, chosen) == []
+        offered = best_available(BEST_AVAILABLE_QOS, [remote_profile], publisher=True)
+        assert incompatible_policies(offered, remote_profile) == []

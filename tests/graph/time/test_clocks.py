@@ -179,13 +179,13 @@ class TestClocks:
         clock = ROSClock()
         clock.set_ros_time_is_active(True)
         slept = []
-        until = Time(seconds=5, clock_type=ClockType.ROS_TIME)
-        thread = threading.Thread(target=lambda: slept.append(clock.sleep_until(until)))
+        wake_time = Time(seconds=5, clock_type=ClockType.ROS_TIME)
+        thread = threading.Thread(target=lambda: slept.append(clock.sleep_until(wake_time)))
         thread.start()
         clock.set_ros_time_override(Time(seconds=4, clock_type=ClockType.ROS_TIME))
         thread.join(0.05)
         assert slept == []
-        clock.set_ros_time_override(until)
+        clock.set_ros_time_override(wake_time)
         thread.join(60.0)
         assert slept == [True]
 
@@ -236,12 +236,12 @@ class TestSimulatedTime:
         set_time(100)
         calls = []
         timer = node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND))
-        once = node.create_timer(50.0, lambda: calls.append("once"))
+        slow_timer = node.create_timer(50.0, lambda: calls.append("once"))
         set_time(101)
         await graph.settle()
         set_time(5)
         assert timer.time_until_next_call() == SECOND
-        assert once.time_until_next_call() == 50 * SECOND
+        assert slow_timer.time_until_next_call() == 50 * SECOND
         for seconds in (5.9, 6.0, 7.0):
             set_time(seconds)
             await graph.settle()

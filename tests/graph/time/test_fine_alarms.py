@@ -125,12 +125,12 @@ def test_timer_file_is_closed_with_event_loop(monkeypatch):
             super().add_reader(file, *call)
 
     loop = Watching()
-    gone, is_fine = weakref.ref(loop), fine_alarms(loop) is not None
+    loop_reference, is_fine = weakref.ref(loop), fine_alarms(loop) is not None
     loop.close()
     del loop
     if not is_fine:
         pytest.skip("this system's event loops wait with a resolution of microseconds")
     gc.collect()
-    assert gone() is None
+    assert loop_reference() is None
     assert watched
     assert set(watched) <= set(closed)

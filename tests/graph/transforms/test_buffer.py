@@ -215,7 +215,7 @@ def test_frames_in_loop_have_no_poses():
 
 def test_invalid_transforms_are_ignored_and_reported_once():
     problems = []
-    bad = message(
+    invalid = message(
         ("world", "nan", [np.nan, 0, 0, 0, 0, 0, 1]),
         ("world", "long", [0, 0, 0, 0, 0, 0, 1.1]),
         ("same", "same", 1.0),
@@ -225,7 +225,7 @@ def test_invalid_transforms_are_ignored_and_reported_once():
     )
     buffer = TransformBuffer(problems.append)
     for _ in range(3):
-        buffer.update(bad, static=False, now_ns=0)
+        buffer.update(invalid, static=False, now_ns=0)
     assert buffer.lookup("world", "good")[0] == 1.0
     for name in ("nan", "long"):
         with pytest.raises(ConnectivityException):

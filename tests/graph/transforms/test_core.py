@@ -257,11 +257,11 @@ def test_invalid_transforms_are_ignored_and_reported(buffer, logged, transform, 
 
 
 def test_quaternion_must_have_unit_length(buffer, logged):
-    bad = stamped("a", "b")
-    bad.transform.rotation.w = 0.9
-    fill(buffer, bad)
-    bad.transform.rotation.w = inf
-    fill(buffer, bad)
+    invalid = stamped("a", "b")
+    invalid.transform.rotation.w = 0.9
+    fill(buffer, invalid)
+    invalid.transform.rotation.w = inf
+    fill(buffer, invalid)
     assert logged[0] == (
         "ERROR",
         (
@@ -344,10 +344,10 @@ def test_velocity_is_computed_from_poses(buffer):
     fill(buffer, *(stamped("world", "robot", time, x=3.0 * time, yaw=0.1 * time) for time in range(6)))
     linear, angular = buffer.lookupVelocityCore("robot", "world", time_at(3), Duration(seconds=2))
     assert (angular[2], linear[2]) == (pytest.approx(0.1), pytest.approx(0.0))
-    whole = buffer.lookupVelocityFullCore(
+    velocity = buffer.lookupVelocityFullCore(
         "robot", "world", "world", (0.0, 0.0, 0.0), "robot", time_at(3), Duration(seconds=2)
     )
-    assert whole == (linear, angular)
+    assert velocity == (linear, angular)
     fill(buffer, *(stamped("world", "cart", time, x=3.0 * time) for time in range(6)))
     linear, angular = buffer.lookupVelocityCore("cart", "world", time_at(0), Duration(seconds=4, nanoseconds=1_000_000))
     assert linear == pytest.approx((3.0, 0.0, 0.0), abs=0.01)

@@ -65,13 +65,13 @@ def guard(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> N
 def test_guardian_ends_processes_and_removes_folder(
     start: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    meek, stubborn, gone = start(), start("SIGINT", "SIGTERM"), start()
+    ordinary, stubborn, ended = start(), start("SIGINT", "SIGTERM"), start()
     folder = tmp_path / "files of the launch"
     folder.mkdir()
-    guard(monkeypatch, f"+{meek.pid}\n+{stubborn.pid}\n+{gone.pid}\n={folder}\n-{gone.pid}\n")
-    assert meek.wait(SECONDS) in (1, -signal.SIGINT)
+    guard(monkeypatch, f"+{ordinary.pid}\n+{stubborn.pid}\n+{ended.pid}\n={folder}\n-{ended.pid}\n")
+    assert ordinary.wait(SECONDS) in (1, -signal.SIGINT)
     assert stubborn.wait(SECONDS) == -signal.SIGKILL
-    assert gone.poll() is None
+    assert ended.poll() is None
     assert not folder.exists()
 
 

@@ -97,8 +97,8 @@ class TestOutput:
             folder = tmp_path / "ros_log" / "latest"
             return all((folder / name).is_file() and text in (folder / name).read_text() for name, text in logs.items())
 
-        quiet, loud = talker(output="own_log", exec_name="quiet"), talker(name="loud", output="both")
-        result = await launch(quiet, loud, ends_when(are_written))
+        log_only, both_outputs = talker(output="own_log", exec_name="quiet"), talker(name="loud", output="both")
+        result = await launch(log_only, both_outputs, ends_when(are_written))
         assert are_written(result.session.context)
         assert "[quiet-1] [INFO]" not in result.err
         assert "[talker-2] [INFO] [" in result.err
@@ -129,10 +129,10 @@ class TestOutput:
         node = Node(
             package="demo_nodes_py", executable="talker_qos", arguments=["-n", "1"], respawn=True, respawn_delay=60.0
         )
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(node, ends_when(printed("has finished cleanly")))
         assert result.err.count("started in the launcher's process") == 1
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
 
     async def test_invalid_node_arguments_fail_launch(self, launch) -> None:
         node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "x"])
@@ -143,10 +143,10 @@ class TestOutput:
 
 class TestManyNodes:
     async def test_five_hundred_nodes_start_in_one_launch(self, launch) -> None:
-        up: list[int] = []
+        started_numbers: list[int] = []
 
         def look(context: LaunchContext) -> None:
-            up.append(len(context.session.host.graph.node_names()))
+            started_numbers.append(len(context.session.host.graph.node_names()))
 
         nodes = [
             Node(
@@ -162,7 +162,7 @@ class TestManyNodes:
         result = await launch(*nodes, RegisterEventHandler(last))
         assert result.succeeded, result.err[-2000:]
         assert result.err.count("has finished cleanly") == 500
-        assert up[0] >= 500
+        assert started_numbers[0] >= 500
 
     async def test_event_loop_runs_between_node_starts(self, launch) -> None:
         counts: list[int] = []
@@ -189,10 +189,10 @@ class TestScope:
         assert result.messages == [str(tmp_path / "ros_log" / "inner"), "/elsewhere"]
 
     async def test_ros_timer_runs_actions_after_period(self, launch) -> None:
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(RosTimer(period=0.3, actions=[LogInfo(msg="now")]))
         assert result.messages == ["now"]
-        assert time.monotonic() - began >= 0.3
+        assert time.monotonic() - start_s >= 0.3
 
     async def test_ros_timer_can_be_canceled(self, launch) -> None:
         timer = RosTimer(period=60.0, actions=[LogInfo(msg="never")])
@@ -245,16 +245,16 @@ class TestNetwork:
         joined: list[float] = []
         monkeypatch.setattr(Network, "_join", lambda self: joined.append(time.monotonic()))
         monkeypatch.delenv("LINKWRIGHT_DDS")
-        began = time.monotonic()
+        start_s = time.monotonic()
         await launch(talker(), Node(package="rviz2", executable="rviz2"), ends_when(lambda _: joined))
-        assert joined[0] - began > 0.7
+        assert joined[0] - start_s > 0.7
 
 
 async def test_requested_port_is_used_by_only_one_viewer(launch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-    two = [Node(package="rviz2", executable="rviz2", name=name) for name in ("one", "other")]
-    result = await launch(*two, ends_when(printed("Viewer: ", times=2)), session_options={"port": port})
+    viewers = [Node(package="rviz2", executable="rviz2", name=name) for name in ("one", "other")]
+    result = await launch(*viewers, ends_when(printed("Viewer: ", times=2)), session_options={"port": port})
     assert result.succeeded, result.err
     pages = re.findall(r"Viewer: http://127\.0\.0\.1:(\d+)/", result.out)
     assert str(port) in pages

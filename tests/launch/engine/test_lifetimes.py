@@ -146,12 +146,12 @@ class TestInterrupted:
     @pytest.mark.slow
     def test_interrupt_during_startup_ends_cleanly(self, begin: Callable[..., Running], write: Write) -> None:
         path = write("a.launch.py", launch_file(sleeper("a"), TALKER, sleeper("b")))
-        began = time.monotonic()
+        start_s = time.monotonic()
         running = begin(path)
         running.until("[b-3] up")
-        whole = time.monotonic() - began
+        duration_s = time.monotonic() - start_s
         running.end()
-        for delay in [whole * step / 16 for step in range(16)]:
+        for delay in [duration_s * step / 16 for step in range(16)]:
             running = begin(path)
             wait_until(lambda running=running: running.has_begun)
             time.sleep(delay)

@@ -138,12 +138,12 @@ class TestMissingPackagesByDefault:
         assert result.succeeded
 
     async def test_misspelled_names_end_launch(self, launch, write: Write) -> None:
-        for wrong in (
+        for misspelled in (
             Node(package="robot_state_publishr", executable="robot_state_publisher"),
             Node(package="robot_state_publisher", executable="robot_state_publishr"),
             IncludeLaunchDescription(str(write("there.launch.py", "").with_name("ther.launch.py"))),
         ):
-            result = await launch(wrong, LogInfo(msg="rest"))
+            result = await launch(misspelled, LogInfo(msg="rest"))
             assert result.messages == []
             assert "skipped" not in result.err
             assert not result.succeeded

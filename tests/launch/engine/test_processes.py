@@ -209,9 +209,9 @@ def test_process_description_is_available_before_start() -> None:
     context.launch_configurations["word"] = "b"
     action = ExecuteProcess(cmd=["echo", ["a", LaunchConfiguration("word")]], cwd="/", env={"A": "1"}, name="py")
     action.prepare(context)
-    about = action.process_description
-    assert about.final_name.startswith("py-")
-    assert (about.final_cmd, about.final_cwd, about.final_env) == (["echo", "ab"], "/", {"A": "1"})
+    description = action.process_description
+    assert description.final_name.startswith("py-")
+    assert (description.final_cmd, description.final_cwd, description.final_env) == (["echo", "ab"], "/", {"A": "1"})
 
 
 class TestFailures:
@@ -313,13 +313,13 @@ class TestProcessExits:
         assert result.out == "[py-1] up\n" * 3
 
     async def test_failing_action_ends_processes_that_are_starting(self, launch) -> None:
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(
             python("import time; time.sleep(60)"),
             python("import time; time.sleep(60)"),
             LogInfo(msg=LaunchConfiguration("x")),
         )
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
         assert not result.succeeded
 
     async def test_failing_action_ends_started_process_and_runs_on_exit(self, launch) -> None:
@@ -330,11 +330,11 @@ class TestProcessExits:
         assert "sending signal 'SIGINT' to process[py-1]" in result.err
 
     async def test_pending_respawn_is_canceled_at_shutdown(self, launch) -> None:
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(
             python("0", respawn=True, respawn_delay=60.0), TimerAction(period=0.3, actions=[Shutdown(reason="over")])
         )
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
         assert result.err.count("process started") == 1
 
     async def test_shutdown_escalates_to_sigterm_and_sigkill(self, launch) -> None:
@@ -374,10 +374,10 @@ class TestProcessExits:
     async def test_grandchildren_are_ended_with_launch(self, launch, tmp_path: Path) -> None:
         pid_file = tmp_path / "pid"
         program = f"sleep 60 & echo $! > {pid_file}; exit 0"
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(ExecuteProcess(cmd=["sh", "-c", program], output="screen"))
         assert result.succeeded
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
         assert is_gone(int(pid_file.read_text()))
 
 

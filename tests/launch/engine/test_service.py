@@ -155,18 +155,18 @@ def test_opaque_coroutine_is_awaited_or_canceled() -> None:
 
 
 def test_filename_substitution_is_scoped_to_its_launch_file(tmp_path: Path) -> None:
-    inner = tmp_path / "inner.launch.xml"
-    inner.write_text('<launch><set_env name="INNER" value="$(filename)"/></launch>')
-    outer = tmp_path / "outer.launch.yaml"
-    outer.write_text(
+    inner_file = tmp_path / "inner.launch.xml"
+    inner_file.write_text('<launch><set_env name="INNER" value="$(filename)"/></launch>')
+    outer_file = tmp_path / "outer.launch.yaml"
+    outer_file.write_text(
         "launch:\n- include: {file: $(dirname)/inner.launch.xml}\n- set_env: {name: OUTER, value: $(filename)}\n"
     )
     service = LaunchService()
-    service.include_launch_description(LaunchDescription([IncludeLaunchDescription(str(outer))]))
+    service.include_launch_description(LaunchDescription([IncludeLaunchDescription(str(outer_file))]))
     assert service.run() == 0
-    assert service.context.environment["INNER"] == str(inner)
-    assert service.context.environment["OUTER"] == str(outer)
-    assert run(IncludeLaunchDescription(str(outer)), SetEnvironmentVariable("X", ThisLaunchFile())) == 1
+    assert service.context.environment["INNER"] == str(inner_file)
+    assert service.context.environment["OUTER"] == str(outer_file)
+    assert run(IncludeLaunchDescription(str(outer_file)), SetEnvironmentVariable("X", ThisLaunchFile())) == 1
 
 
 def test_emit_event_rejects_other_types() -> None:

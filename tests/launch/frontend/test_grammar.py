@@ -67,8 +67,8 @@ def test_substitution_names_map_to_classes() -> None:
     assert isinstance(environment, EnvironmentVariable)
     assert environment.name[0].perform(None) == "NAME"
     assert environment.default_value[0].perform(None) == "a b"
-    [bare] = parse_substitution("$(env NAME)")
-    assert bare.default_value is None
+    [environment_variable] = parse_substitution("$(env NAME)")
+    assert environment_variable.default_value is None
     assert isinstance(parse_substitution("$(dirname)")[0], ThisLaunchFileDir)
     assert isinstance(parse_substitution("$(path-join a b)")[0], PathJoinSubstitution)
     assert isinstance(parse_substitution("$(any 1 0)")[0], AnySubstitution)

@@ -263,37 +263,41 @@ def generate_launch_description():
 
 class TestIncludeLaunchDescription:
     async def test_include_passes_arguments_and_shares_configurations(self, launch, write: Write) -> None:
-        inner = write("sub/inner.launch.py", INNER.replace("{default}", ""))
+        inner_file = write("sub/inner.launch.py", INNER.replace("{default}", ""))
         result = await launch(
             SetLaunchConfiguration("fast", "9"),
             IncludeLaunchDescription(
-                PythonLaunchDescriptionSource([str(inner.parent), "/inner.launch.py"]),
+                PythonLaunchDescriptionSource([str(inner_file.parent), "/inner.launch.py"]),
                 launch_arguments={"speed": LaunchConfiguration("fast")}.items(),
             ),
             say(LaunchConfiguration("leaks"), LaunchConfiguration("speed")),
         )
-        assert result.messages == [f"inner 9 {inner.parent}", "yes9"]
+        assert result.messages == [f"inner 9 {inner_file.parent}", "yes9"]
 
     @pytest.mark.parametrize("source", [AnyLaunchDescriptionSource, str])
     async def test_any_source_and_path_are_accepted(
         self, launch, write: Write, source: Callable[[str], object]
     ) -> None:
-        inner = write("inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
-        assert (await launch(IncludeLaunchDescription(source(str(inner))))).messages[0].startswith("inner 1")
+        inner_file = write("inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
+        assert (await launch(IncludeLaunchDescription(source(str(inner_file))))).messages[0].startswith("inner 1")
 
     async def test_non_text_argument_fails_only_when_include_runs(self, launch, write: Write) -> None:
-        inner = write("inner.launch.py", INNER.replace("{default}", ""))
+        inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
         pairs: Any = {"speed": None}.items()
-        never = IncludeLaunchDescription(str(inner), launch_arguments=pairs, condition=IfCondition("false"))
-        result = await launch(never, say("before"), IncludeLaunchDescription(str(inner), launch_arguments=pairs))
+        skipped_include = IncludeLaunchDescription(
+            str(inner_file), launch_arguments=pairs, condition=IfCondition("false")
+        )
+        result = await launch(
+            skipped_include, say("before"), IncludeLaunchDescription(str(inner_file), launch_arguments=pairs)
+        )
         assert result.messages == ["before"]
         assert "error[LAUNCH114]: the value of argument 'speed' is None, which is not a string" in result.err
         assert not result.succeeded
 
     async def test_missing_argument_is_reported_before_actions_run(self, launch, write: Write) -> None:
-        inner = write("inner.launch.py", INNER.replace("{default}", ""))
-        result = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
-        text = f"the included launch file '{inner}' requires argument 'speed', which is not given"
+        inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
+        result = await launch(IncludeLaunchDescription(str(inner_file), launch_arguments=[("sped", "1")]))
+        text = f"the included launch file '{inner_file}' requires argument 'speed', which is not given"
         assert f"error[LAUNCH114]: {text}" in result.err
         assert "did you mean 'speed' instead of 'sped'?" in result.err
         assert result.messages == []
@@ -323,16 +327,16 @@ class TestIncludeLaunchDescription:
         assert f"--> {write(name, text)}" in result.err
 
     async def test_missing_argument_of_inline_description_is_reported(self, launch) -> None:
-        inner = LaunchDescriptionSource(LaunchDescription([DeclareLaunchArgument("speed")]))
-        result = await launch(IncludeLaunchDescription(inner))
+        inner_file = LaunchDescriptionSource(LaunchDescription([DeclareLaunchArgument("speed")]))
+        result = await launch(IncludeLaunchDescription(inner_file))
         assert "the included launch description requires argument 'speed', which is not given" in result.err
         assert "add ('speed', VALUE) to launch_arguments" in result.err
 
     async def test_error_in_included_file_names_that_file(self, launch, write: Write) -> None:
-        inner = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")
-        result = await launch(IncludeLaunchDescription(str(inner)))
+        inner_file = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")
+        result = await launch(IncludeLaunchDescription(str(inner_file)))
         assert "raised NameError: name 'nothing' is not defined" in result.err
-        assert f"{inner.name}:2:" in result.err
+        assert f"{inner_file.name}:2:" in result.err
 
     async def test_missing_included_file_names_including_line(self, launch, tmp_path: Path) -> None:
         result = await launch(IncludeLaunchDescription(str(tmp_path / "none.launch.py")))
@@ -341,7 +345,7 @@ class TestIncludeLaunchDescription:
 
     async def test_this_launch_file_dir_is_restored_after_include(self, launch, write: Write) -> None:
         write("sub/inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
-        outer = write(
+        outer_file = write(
             "outer.launch.py",
             """
 from launch import LaunchDescription
@@ -355,17 +359,17 @@ def generate_launch_description():
     ])
 """,
         )
-        result = await launch(IncludeLaunchDescription(str(outer)))
-        assert result.messages == [f"inner 1 {outer.parent / 'sub'}", str(outer.parent)]
+        result = await launch(IncludeLaunchDescription(str(outer_file)))
+        assert result.messages == [f"inner 1 {outer_file.parent / 'sub'}", str(outer_file.parent)]
 
 
 def test_launch_arguments_of_description_are_listed(write: Write) -> None:
-    inner = write("inner.launch.py", INNER.replace("{default}", ""))
+    inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
     description = LaunchDescription(
         [
             DeclareLaunchArgument("a", default_value="1"),
             GroupAction([DeclareLaunchArgument("b")], condition=IfCondition("true")),
-            IncludeLaunchDescription(str(inner)),
+            IncludeLaunchDescription(str(inner_file)),
             IncludeLaunchDescription([ThisLaunchFileDir(), "/unknown.launch.py"]),
         ]
     )
@@ -374,6 +378,8 @@ def test_launch_arguments_of_description_are_listed(write: Write) -> None:
 
 
 def test_argument_given_by_include_is_not_listed(write: Write) -> None:
-    inner = write("inner.launch.py", INNER.replace("{default}", ""))
-    description = LaunchDescription([IncludeLaunchDescription(str(inner), launch_arguments={"speed": "1"}.items())])
+    inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
+    description = LaunchDescription(
+        [IncludeLaunchDescription(str(inner_file), launch_arguments={"speed": "1"}.items())]
+    )
     assert description.get_launch_arguments() == []

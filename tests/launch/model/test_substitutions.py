@@ -56,10 +56,10 @@ def test_texts_and_substitutions_are_joined(context: LaunchContext) -> None:
     assert perform_substitutions(context, normalize_to_list_of_substitutions(parts)) == "xacro arm.urdf/x"
 
 
-@pytest.mark.parametrize("wrong", [3, None, [3], b"x"])
-def test_non_text_values_are_rejected(wrong: object) -> None:
+@pytest.mark.parametrize("invalid_value", [3, None, [3], b"x"])
+def test_non_text_values_are_rejected(invalid_value: object) -> None:
     with pytest.raises(TypeError, match="expected a text"):
-        normalize_to_list_of_substitutions(wrong)
+        normalize_to_list_of_substitutions(invalid_value)
 
 
 def test_launch_configuration_returns_value_or_default(context: LaunchContext) -> None:
@@ -231,8 +231,8 @@ def test_substitutions_describe_themselves(substitution: Substitution, descripti
 
 def test_custom_substitution_is_performed_and_can_fail(context: LaunchContext) -> None:
     class Upper(Substitution):
-        def __init__(self, inner: str) -> None:
-            self.inner = inner  # many classes do not call the base class's constructor
+        def __init__(self, inner_substitution: str) -> None:
+            self.inner = inner_substitution  # many classes do not call the base class's constructor
 
         def perform(self, context: LaunchContext) -> str:
             if not self.inner:

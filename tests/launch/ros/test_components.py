@@ -120,11 +120,11 @@ class TestRequests:
 
 class TestContainers:
     async def test_builtin_components_run_in_launcher_process(self, launch) -> None:
-        seen: dict[str, Any] = {}
+        components: dict[str, Any] = {}
 
         def look(context: LaunchContext) -> None:
-            seen["nodes"] = context.session.host.graph.node_names()
-            seen["counts"] = [
+            components["nodes"] = context.session.host.graph.node_names()
+            components["counts"] = [
                 get_node_name_count(context, name) for name in ("/ns/box", "/a/tk", "/robot_state_publisher")
             ]
 
@@ -151,8 +151,8 @@ class TestContainers:
             ),
         )
         assert result.succeeded, result.err
-        assert {"/ns/box", "/a/tk", "/robot_state_publisher", "/fixed"} <= set(seen["nodes"])
-        assert seen["counts"] == [1, 1, 1]
+        assert {"/ns/box", "/a/tk", "/robot_state_publisher", "/fixed"} <= set(components["nodes"])
+        assert components["counts"] == [1, 1, 1]
         assert "Loaded node '/a/tk' in container '/ns/box'" in result.err
         assert "[component_container-1] [INFO] [" in result.err
         assert "] [robot_state_publisher]: Robot initialized" in result.err
@@ -180,8 +180,10 @@ class TestContainers:
         assert "Loaded node '/scope/n/inside' in container '/scope/box'" in result.err
 
     async def test_unknown_plugin_suggests_name_and_line(self, launch) -> None:
-        wrong = ComposableNode(package="composition", plugin="composition::Talkr", name="tk")
-        result = await launch(container(wrong, talker(name="other")), ends_when(printed("LAUNCH139", "Loaded node")))
+        misspelled = ComposableNode(package="composition", plugin="composition::Talkr", name="tk")
+        result = await launch(
+            container(misspelled, talker(name="other")), ends_when(printed("LAUNCH139", "Loaded node"))
+        )
         assert (
             "error[LAUNCH139]: Failed to load node 'tk' of type 'composition::Talkr' in container '/box'" in result.err
         )
@@ -227,13 +229,13 @@ class TestContainers:
             when(printed("Loaded node '/b'"), OpaqueFunction(function=ask)),
             ends_when(lambda _: len(responses) == 4),
         )
-        listed, missing, unloaded, rest = responses
+        listed, missing, unloaded, remaining = responses
         assert list(listed.full_node_names) == ["/a", "/b"]
         assert list(listed.unique_ids) == [1, 2]
         assert missing.success is False
         assert missing.error_message == "No node found with unique_id: 7"
         assert unloaded.success is True
-        assert list(rest.full_node_names) == ["/b"]
+        assert list(remaining.full_node_names) == ["/b"]
 
     async def test_composed_model_is_reloaded(self, launch, write: Write) -> None:
         path = write("r.urdf", URDF)

@@ -183,12 +183,12 @@ class TestProcessNodes:
         planned: list[HostedPlan] = []
         monkeypatch.setattr(NodeHost, "schedule_node", lambda _, plan: planned.append(plan))
         right = write("right.yaml", f"{name}: {{ros__parameters: {{a: 1}}}}\nother: {{ros__parameters: {{a: 2}}}}\n")
-        wrong = write("wrong.yaml", f"{name}x: {{ros__parameters: {{b: 1}}}}\n")
-        files = [str(right), str(wrong)]
+        other_file = write("wrong.yaml", f"{name}x: {{ros__parameters: {{b: 1}}}}\n")
+        files = [str(right), str(other_file)]
         result = await launch(Node(package=package, executable=executable, parameters=files))
         assert [plan.parameters for plan in planned] == [{"a": 1}]
         assert result.err.count("warning[LAUNCH149]") == 1
-        assert f"parameter file '{wrong}' has no section for node '/{name}'" in result.err
+        assert f"parameter file '{other_file}' has no section for node '/{name}'" in result.err
 
     async def test_temporary_files_are_removed_after_launch(self, launch, ros: PackageFinder) -> None:
         result = await launch(

@@ -60,8 +60,8 @@ def test_ended_fixture_fails_launch(tests) -> None:
 def test_process_output_is_compared_with_expected_lines(tests, expected, status) -> None:
     talker = python("print('pid 7'); print('the first'); print('the second')")
     tests.description.add_action(talker)
-    wanted = output.create_output_lines_test([b"first", expected])
-    tests.service.add_output_test(tests.description, talker, wanted)
+    expected_lines = output.create_output_lines_test([b"first", expected])
+    tests.service.add_output_test(tests.description, talker, expected_lines)
     assert tests.run() == status
 
 
@@ -69,9 +69,9 @@ def test_output_filters_and_expected_files_are_read(tmp_path) -> None:
     assert output.create_output_lines_filter()(b"pid 7\nthe first\n") == b"the first\n"
     (tmp_path / "lines.txt").write_bytes(b"first\n")
     (tmp_path / "patterns.regex").write_bytes(b"f.rst\n")
-    for name, wanted in ("lines", [b"first"]), ("patterns", [re.compile(b"f.rst")]):
+    for name, expected_lines in ("lines", [b"first"]), ("patterns", [re.compile(b"f.rst")]):
         _, _, matches, patterns = output.create_output_test_from_file(str(tmp_path / name))
-        assert list(patterns) == wanted
+        assert list(patterns) == expected_lines
         assert matches(b"the first\n", patterns[0])
     with pytest.raises(RuntimeError, match="could not find"):
         output.create_output_test_from_file(str(tmp_path / "none"))

@@ -269,8 +269,8 @@ def test_installer_installs_and_runs_linkwright(installable: Path, tmp_path: Pat
     assert (result.returncode, result.stderr) == (0, "")
     assert f". '{home}/linkwright/bin/activate'" in result.stdout
     assert "Linkwright 已安装" in result.stdout
-    again = install(installable, home)
-    assert (again.returncode, again.stderr) == (0, "")
+    second_run = install(installable, home)
+    assert (second_run.returncode, second_run.stderr) == (0, "")
 
 
 def test_installer_rejects_damaged_wheel(installable: Path, tmp_path: Path) -> None:

@@ -86,12 +86,12 @@ def interpreter(name: str) -> str | None:
     return None
 
 
-def run_in_situation(name: str, arguments: list[str], folder: Path, limits: Limits, **more: Any) -> Outcome:
+def run_in_situation(name: str, arguments: list[str], folder: Path, limits: Limits, **options: Any) -> Outcome:
     """Run a program in the sandbox of a situation.
 
     The word PYTHON among the arguments becomes its Python.
     """
-    request = {"arguments": arguments, "folder": str(folder), "limits": asdict(limits), **more}
+    request = {"arguments": arguments, "folder": str(folder), "limits": asdict(limits), **options}
     if os.geteuid() == 0 and not SITUATIONS[name][0]:
         for path in (folder, *folder.rglob("*")):
             os.chown(path, _user(), _user(), follow_symlinks=False)

@@ -169,27 +169,27 @@ def test_run_cannot_leave_sandbox(situation: str, student: Path) -> None:
         assert outcome.status == -9
         return
     breaches = {name for name, was_done in json.loads(outcome.stdout).items() if was_done}
-    assert breaches <= _possible(outcome.protections)
+    assert breaches <= _find_possible_attacks(outcome.protections)
     if Protection.WRITE in outcome.protections:
         assert (neighbor / "secret").read_text() == "secret"
         assert sorted(path.name for path in student.parent.iterdir()) == ["neighbor", "server", "student"]
 
 
-def _possible(protections: frozenset[Protection]) -> set[str]:
+def _find_possible_attacks(protections: frozenset[Protection]) -> set[str]:
     """Return the actions that the protections do not forbid."""
-    possible = {"write above its folder"}  # the parent folder may belong to the sandbox
+    possible_attacks = {"write above its folder"}  # the parent folder may belong to the sandbox
     if Protection.READ not in protections:
-        possible |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}
-        possible |= {"read by the grader's root"}
+        possible_attacks |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}
+        possible_attacks |= {"read by the grader's root"}
     if Protection.WRITE not in protections:
-        possible |= {"write into a neighbor's folder", "change a neighbor's file", "truncate a neighbor's file"}
-        possible |= {"write into /var/tmp", "link a neighbor's file"}
+        possible_attacks |= {"write into a neighbor's folder", "change a neighbor's file", "truncate a neighbor's file"}
+        possible_attacks |= {"write into /var/tmp", "link a neighbor's file"}
     if Protection.PROCESSES not in protections:
-        possible |= {"read the grader's environment", "open the grader's memory", "trace the grader"}
-        possible |= {"trace its parent", "signal the grader"}
+        possible_attacks |= {"read the grader's environment", "open the grader's memory", "trace the grader"}
+        possible_attacks |= {"trace its parent", "signal the grader"}
     if Protection.NETWORK not in protections:
-        possible |= {"reach a server on this host", "reach another host", "reach a server by a file"}
-    return possible
+        possible_attacks |= {"reach a server on this host", "reach another host", "reach a server by a file"}
+    return possible_attacks
 
 
 def test_kill_of_all_processes_affects_only_run(situation: str, student: Path) -> None:

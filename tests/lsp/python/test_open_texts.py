@@ -28,9 +28,9 @@ def test_ranged_and_full_changes_give_editor_text(before: str, inserted: str, bo
     after = before[:start] + inserted + before[end:]
     ranges = OpenText("file:///a.py", before, 1, "utf-16")
     ranges.change(2, [{"range": as_range(TextPositions(before), start, end), "text": inserted}])
-    whole = OpenText("file:///a.py", before, 1, "utf-16")
-    whole.change(2, [{"text": after}])
-    assert (ranges.text, ranges.version) == (whole.text, whole.version) == (after, 2)
+    full_text = OpenText("file:///a.py", before, 1, "utf-16")
+    full_text.change(2, [{"text": after}])
+    assert (ranges.text, ranges.version) == (full_text.text, full_text.version) == (after, 2)
 
 
 def test_several_changes_apply_in_sequence() -> None:

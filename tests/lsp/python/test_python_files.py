@@ -92,11 +92,11 @@ async def editor(workspace: Path) -> AsyncIterator[Editor]:
 TALKER = "src/my_package/my_package/talker.py"
 
 
-def place(text: str, wanted: str, more: int = 0) -> types.Position:
+def place(text: str, searched_text: str, offset: int = 0) -> types.Position:
     """Return the position of the first occurrence of a text, in UTF-16 code units."""
-    before, found, _ = text.partition(wanted)
+    before, found, _ = text.partition(searched_text)
     assert found
-    line = before.rpartition("\n")[2] + wanted[:more]
+    line = before.rpartition("\n")[2] + searched_text[:offset]
     return types.Position(before.count("\n"), len(line.encode("utf-16-le")) // 2)
 
 
@@ -127,7 +127,7 @@ async def test_ros_and_workspace_modules_are_found(editor: Editor) -> None:
     assert {text_at(NODE, finding.range) for finding in findings} == {"os", "LaunchNode"}
     assert "A node in the graph" in await hover(editor, TALKER, place(NODE, "Node)"))
     assert "Count" in await hover(editor, TALKER, place(NODE, "Count\n"))
-    assert "create_publisher" in await hover(editor, TALKER, place(NODE, "create_publisher", more=3))
+    assert "create_publisher" in await hover(editor, TALKER, place(NODE, "create_publisher", offset=3))
 
 
 async def test_unsaved_text_reaches_servers(editor: Editor) -> None:
@@ -137,7 +137,7 @@ async def test_unsaved_text_reaches_servers(editor: Editor) -> None:
     editor.change(TALKER, text)
     findings = await editor.until(TALKER, "F401", "missing-attribute")
     assert "has no attribute `inf`" in {finding.code: finding.message for finding in findings}["missing-attribute"]
-    assert "info" in await labels(editor, TALKER, place(text, "logger().inf", more=12))
+    assert "info" in await labels(editor, TALKER, place(text, "logger().inf", offset=12))
     editor.change(TALKER, text.replace("().inf", "().info('说😀')"))
     await editor.until(TALKER, "F401")
 
@@ -156,7 +156,7 @@ async def test_changed_workspace_message_is_reloaded(editor: Editor, workspace: 
 
 async def test_name_is_renamed_in_all_files_and_definition_is_found(editor: Editor, workspace: Path) -> None:
     editor.open(TALKER, language="python")
-    document, position = editor.document(TALKER), place(NODE, "half(", more=1)
+    document, position = editor.document(TALKER), place(NODE, "half(", offset=1)
     definitions = await editor.client.text_document_definition_async(types.DefinitionParams(document, position))
     assert isinstance(definitions, list)
     assert [location.uri for location in definitions if isinstance(location, types.Location)] == [
@@ -192,9 +192,9 @@ async def test_launch_file_combines_linkwright_and_ty_completions(editor: Editor
     name = "src/my_package/launch/talker.launch.py"
     text = LAUNCH.replace("def gen", "launch = LaunchDescription([])\nlaunch.add_a\n\n\ndef gen")
     editor.open(name, text, language="python")
-    assert "my_package" in await labels(editor, name, place(text, '"my_p', more=3))
-    assert "add_action" in await labels(editor, name, place(text, "launch.add_a", more=12))
-    assert "`executable`" in await hover(editor, name, place(text, '"talker', more=3))
+    assert "my_package" in await labels(editor, name, place(text, '"my_p', offset=3))
+    assert "add_action" in await labels(editor, name, place(text, "launch.add_a", offset=12))
+    assert "`executable`" in await hover(editor, name, place(text, '"talker', offset=3))
 
 
 async def children_of(editor: Editor) -> dict[str, psutil.Process]:

@@ -63,10 +63,10 @@ class Peer:
     def close(self) -> None:
         self.is_closed = True
 
-    def until(self, wanted: Callable[[Message], object]) -> Message:
+    def until(self, condition: Callable[[Message], object]) -> Message:
         """Wait for a message."""
-        wait_until(lambda: any(map(wanted, list(self.messages))), what=lambda: self.messages)
-        return next(message for message in self.messages if wanted(message))
+        wait_until(lambda: any(map(condition, list(self.messages))), what=lambda: self.messages)
+        return next(message for message in self.messages if condition(message))
 
     def answer(self, identifier: int) -> Message:
         """Wait for the answer to a request."""
@@ -96,12 +96,12 @@ class Connection:
         document = {"uri": uri, "languageId": language, "version": 3, "text": "a = 1\n"}
         self.request(None, "textDocument/didOpen", {"textDocument": document})
 
-    def hover(self, identifier: int, own: Any = None, **more: Any) -> None:
+    def hover(self, identifier: int, has_own_result: Any = None, **options: Any) -> None:
         """Request a hover, which Linkwright's own server answers."""
         place = {"textDocument": {"uri": URI}, "position": {"line": 0, "character": 0}}
-        self.request(identifier, "textDocument/hover", {**place, **more})
+        self.request(identifier, "textDocument/hover", {**place, **options})
         self.own.until(lambda message: message.get("id") == identifier)
-        self.router.from_own({"id": identifier, "result": own})
+        self.router.from_own({"id": identifier, "result": has_own_result})
 
     def findings(self, count: int) -> list[str]:
         """Wait until so many findings were published, and return their messages."""
@@ -160,7 +160,7 @@ def test_early_request_waits_for_servers(connect: Callable[..., Connection]) -> 
 def test_linkwright_answer_is_returned_immediately(connect: Callable[..., Connection]) -> None:
     connection = connect(program("ty"))
     connection.open()
-    connection.hover(5, own={"contents": "own"}, hang=True)
+    connection.hover(5, has_own_result={"contents": "own"}, hang=True)
     assert connection.editor.answer(5)["result"] == {"contents": "own"}
 
 
@@ -207,7 +207,7 @@ def test_closed_file_keeps_linkwright_findings(connect: Callable[..., Connection
     connection.findings(1)
     connection.request(None, "textDocument/didClose", {"textDocument": {"uri": URI}})
     assert connection.findings(0) == []
-    connection.hover(5, own={"contents": "own"})
+    connection.hover(5, has_own_result={"contents": "own"})
     assert connection.editor.answer(5)["result"] == {"contents": "own"}
 
 

@@ -72,6 +72,6 @@ def test_wait_ends_after_its_duration():
 def test_velocity_is_reduced_before_obstacle():
     velocity = Velocity(0.5, 0.0, 0.2)
     assert slow_near_obstacles((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: True) == velocity
-    half = slow_near_obstacles((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: poses[:, 0].max() < 0.27)
-    assert 0.2 <= half.x <= 0.3
-    assert half.yaw == pytest.approx(half.x * 0.4)
+    slowed = slow_near_obstacles((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: poses[:, 0].max() < 0.27)
+    assert 0.2 <= slowed.x <= 0.3
+    assert slowed.yaw == pytest.approx(slowed.x * 0.4)

@@ -55,15 +55,15 @@ def test_limit_zone_keeps_curvature(velocity, remaining_share):
 
 def test_approach_zone_keeps_time_before_collision():
     rule = ZoneRule(ZoneAction.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.1)
-    ahead = Velocity(0.5, 0.0, 0.0)
+    forward = Velocity(0.5, 0.0, 0.0)
     # The point is 0.7 m ahead. The edge of the body, at 0.2 m, reaches it after 0.5 m or 1 s, which is less than 2 s.
-    allowed = rule.limit_velocity(BODY, points(1, 0.699), ahead)
+    allowed = rule.limit_velocity(BODY, points(1, 0.699), forward)
     assert allowed is not None
     assert allowed.x == pytest.approx(0.25, abs=0.03)
-    assert rule.limit_velocity(BODY, points(1, 1.5), ahead) is None
-    assert rule.limit_velocity(BODY, points(1, -0.7), ahead) is None
-    assert rule.limit_velocity(BODY, points(1, 0.1), ahead) == pytest.approx((0.0, 0.0, 0.0))
-    assert rule.limit_velocity(BODY, np.zeros((0, 2)), ahead) is None
+    assert rule.limit_velocity(BODY, points(1, 1.5), forward) is None
+    assert rule.limit_velocity(BODY, points(1, -0.7), forward) is None
+    assert rule.limit_velocity(BODY, points(1, 0.1), forward) == pytest.approx((0.0, 0.0, 0.0))
+    assert rule.limit_velocity(BODY, np.zeros((0, 2)), forward) is None
 
 
 def test_approach_zone_considers_area_swept_by_rotation():
@@ -87,9 +87,9 @@ def test_most_restrictive_zone_applies():
 
 
 def test_stop_zone_is_reported_for_standing_robot():
-    still = Velocity(0.0, 0.0, 0.0)
-    verdict = limit_by_zones(still, [("stop", ZoneRule(ZoneAction.STOP, 1), AHEAD, points(1, 0.5))])
-    assert verdict == Verdict(still, ZoneAction.STOP, "stop")
+    standing = Velocity(0.0, 0.0, 0.0)
+    verdict = limit_by_zones(standing, [("stop", ZoneRule(ZoneAction.STOP, 1), AHEAD, points(1, 0.5))])
+    assert verdict == Verdict(standing, ZoneAction.STOP, "stop")
 
 
 @pytest.mark.parametrize(

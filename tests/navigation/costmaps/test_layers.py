@@ -42,10 +42,10 @@ def occupancy(rows: int = 40, columns: int = 40) -> Grid:
 class OverheadSensor:
     """A sensor above the center of a costmap, with the layer that it updates."""
 
-    def __init__(self, kind=ObstacleLayer, *more, layers=(), **source) -> None:
-        given = {"clearing": True, "max_obstacle_height": 2.0, **source}
-        self.buffer = ObservationBuffer(Source(**given))
-        self.layer = kind([self.buffer], HeightRange(), *more, footprint_clearing=False)
+    def __init__(self, kind=ObstacleLayer, *parameters, layers=(), **source) -> None:
+        source_parameters = {"clearing": True, "max_obstacle_height": 2.0, **source}
+        self.buffer = ObservationBuffer(Source(**source_parameters))
+        self.layer = kind([self.buffer], HeightRange(), *parameters, footprint_clearing=False)
         self.costmap = costmap(self.layer, *layers)
         self.time_ns = 0
 
@@ -82,12 +82,12 @@ def inflated_cells(*obstacles, **parameters) -> tuple[np.ndarray, float]:
 )
 def test_inflation_costs_follow_formula_of_nav2(obstacles, radius, factor):
     cells, inscribed = inflated_cells(*obstacles, inflation_radius=radius, cost_scaling_factor=factor)
-    reach = np.ceil(radius / 0.1) * 0.1
+    inflation_distance = np.ceil(radius / 0.1) * 0.1
     for row, column in np.ndindex(cells.shape):
         distance = 0.1 * min(hypot(row - obstacle[0], column - obstacle[1]) for obstacle in obstacles)
         if distance == 0.0:
             expected = LETHAL
-        elif distance > reach + 1e-9:
+        elif distance > inflation_distance + 1e-9:
             expected = FREE
         elif distance <= inscribed:
             expected = INSCRIBED

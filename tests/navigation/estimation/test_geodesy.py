@@ -31,8 +31,8 @@ def meridian_arc(latitude):
 
     steps, end = 2000, radians(latitude)
     step = end / steps
-    inner = sum((4 if index % 2 else 2) * radius(index * step) for index in range(1, steps))
-    return step / 3.0 * (radius(0.0) + inner + radius(end))
+    weighted_sum = sum((4 if index % 2 else 2) * radius(index * step) for index in range(1, steps))
+    return step / 3.0 * (radius(0.0) + weighted_sum + radius(end))
 
 
 @pytest.mark.parametrize("latitude", [10.0, 45.0, 79.0])

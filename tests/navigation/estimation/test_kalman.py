@@ -21,11 +21,11 @@ FILTERS = pytest.mark.parametrize("filter_type", [ExtendedKalmanFilter, Unscente
 
 
 def measurement_of(time_s, variance=0.01, threshold=inf, **values):
-    vector, covariance, used = np.zeros(SIZE), np.zeros((SIZE, SIZE)), [False] * SIZE
+    vector, covariance, measured = np.zeros(SIZE), np.zeros((SIZE, SIZE)), [False] * SIZE
     for name, value in values.items():
         index = State[name.upper()]
-        vector[index], covariance[index, index], used[index] = value, variance, True
-    return Measurement("sensor", round(time_s * SECOND), vector, covariance, tuple(used), threshold)
+        vector[index], covariance[index, index], measured[index] = value, variance, True
+    return Measurement("sensor", round(time_s * SECOND), vector, covariance, tuple(measured), threshold)
 
 
 def diagonal(**values):
@@ -214,9 +214,11 @@ def test_dynamic_process_noise_grows_with_velocity():
 
 
 def test_commands_accelerate_within_limits_and_time_out():
-    ones, limits = (1.0,) * 6, (0.5,) * 6
+    unit_gains, limits = (1.0,) * 6, (0.5,) * 6
     is_controlled = (True, False, False, False, False, True)
-    kalman = ExtendedKalmanFilter(Settings(control=Control(is_controlled, SECOND, limits, ones, limits, ones)))
+    kalman = ExtendedKalmanFilter(
+        Settings(control=Control(is_controlled, SECOND, limits, unit_gains, limits, unit_gains))
+    )
     kalman.process(measurement_of(0.0, vx=0.0, vyaw=0.0))
     kalman.command = (np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.1]), 0)
     kalman.predict(SECOND // 2)

@@ -30,8 +30,8 @@ def axes(*names):
     return tuple(State(index).name in names for index in range(SIZE))
 
 
-def names_of(used):
-    return {State(index).name for index, is_used in enumerate(used) if is_used}
+def measured_names(measured):
+    return {State(index).name for index, is_used in enumerate(measured) if is_used}
 
 
 def test_pose_and_covariance_are_transformed_to_world():
@@ -39,7 +39,7 @@ def test_pose_and_covariance_are_transformed_to_world():
     reading = reader.read(pose(1.0, 2.0, rpy=(0, 0, 0.3)), SIX, pose(10.0, rpy=(0, 0, pi / 2)), 0)
     assert reading.values[POSITION] == pytest.approx([8.0, 1.0, 0.0])
     assert reading.values[State.YAW] == pytest.approx(0.3 + pi / 2)
-    assert names_of(reading.used) == {"Y", "YAW"}
+    assert measured_names(reading.used) == {"Y", "YAW"}
     assert np.diag(reading.covariance)[:6] == pytest.approx([2.0, 1.0, 3.0, 5.0, 4.0, 6.0])
 
 
@@ -59,14 +59,14 @@ def test_differential_poses_give_velocities():
     reading = reader.read(pose(1.0, 1.0, rpy=(0, 0, pi / 2 + 0.1)), SIX, IDENTITY, SECOND // 2)
     assert reading.values[VELOCITY] == pytest.approx([2.0, 0.0, 0.0])
     assert reading.values[State.VYAW] == pytest.approx(0.2)
-    assert names_of(reading.used) == {"VX", "VY", "VYAW"}
+    assert measured_names(reading.used) == {"VX", "VY", "VYAW"}
     assert np.diag(reading.covariance)[TWIST] == pytest.approx(np.diag(SIX) * 2.0 * 0.5)
     assert reader.read(pose(), SIX, IDENTITY, SECOND // 2) is None
 
 
 def test_two_d_mode_fixes_remaining_states_to_zero():
     reading = PoseReader(axes("X"), two_d=True).read(pose(1.0, 2.0, 3.0, (0.1, 0.2, 0.3)), SIX, IDENTITY, 0)
-    assert names_of(reading.used) == {"X", "Z", "ROLL", "PITCH", "VZ", "VROLL", "VPITCH", "AZ"}
+    assert measured_names(reading.used) == {"X", "Z", "ROLL", "PITCH", "VZ", "VROLL", "VPITCH", "AZ"}
     assert reading.values[State.Z] == reading.values[State.ROLL] == 0.0
     assert reading.covariance[State.AZ, State.AZ] == 1e-6
 
@@ -83,7 +83,7 @@ def test_orientation_of_rotated_imu_gives_body_attitude(mounting):
 def test_roll_of_rotated_imu_is_pitch_of_body():
     mounting = pose(rpy=(0, 0, pi / 2))
     reading = PoseReader(axes("ROLL")).read_orientation(mounting[3:], SIX, mounting, 0)
-    assert names_of(reading.used) == {"PITCH"}
+    assert measured_names(reading.used) == {"PITCH"}
     assert reading.covariance[State.PITCH, State.PITCH] == pytest.approx(4.0)
 
 
@@ -94,7 +94,7 @@ def test_twist_is_corrected_for_lever_arm_of_sensor():
     assert reading.values[VELOCITY] == pytest.approx([0.0, 0.0, 0.0])
     assert reading.values[RATES] == pytest.approx([0.0, 0.0, 2.0])
     assert np.diag(reading.covariance)[TWIST] == pytest.approx([2.0, 1.0, 3.0, 5.0, 4.0, 6.0])
-    assert names_of(reading.used) == {"VX", "VY", "VZ", "VROLL", "VPITCH", "VYAW"}
+    assert measured_names(reading.used) == {"VX", "VY", "VZ", "VROLL", "VPITCH", "VYAW"}
 
 
 def test_gravity_is_subtracted_from_resting_accelerometer():
@@ -107,24 +107,24 @@ def test_acceleration_is_rotated_into_body_frame():
     mounting = pose(rpy=(0, 0, pi / 2))
     reading = read_acceleration(np.array([1.0, 0.0, 0.0]), np.eye(3), mounting, axes("AX"), two_d=False)
     assert reading.values[12:] == pytest.approx([0.0, 1.0, 0.0])
-    assert names_of(reading.used) == {"AY"}
+    assert measured_names(reading.used) == {"AY"}
 
 
 def test_nonfinite_values_are_ignored_and_others_are_used():
     reading = PoseReader(axes("X", "Y", "YAW")).read((1.0, nan, nan, nan, 0.0, 0.0, 1.0), SIX, IDENTITY, 0)
-    assert names_of(reading.used) == {"X"}
+    assert measured_names(reading.used) == {"X"}
     assert reading.values[State.X] == 1.0
     assert np.isfinite(reading.values).all()
     twist = read_twist(
         np.array([1.0, nan, 0.0]), np.array([inf, 0.0, 2.0]), SIX, IDENTITY, np.zeros(3), ALL, two_d=False
     )
-    assert names_of(twist.used) == {"VX", "VZ", "VPITCH", "VYAW"}
+    assert measured_names(twist.used) == {"VX", "VZ", "VPITCH", "VYAW"}
     acceleration = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), IDENTITY, ALL, two_d=False)
-    assert names_of(acceleration.used) == {"AY", "AZ"}
+    assert measured_names(acceleration.used) == {"AY", "AZ"}
     rotated_acceleration = read_acceleration(
         np.array([nan, 2.0, 3.0]), np.eye(3), pose(rpy=(0, 0, 0.7)), ALL, two_d=False
     )
-    assert names_of(rotated_acceleration.used) == {"AZ"}
+    assert measured_names(rotated_acceleration.used) == {"AZ"}
 
 
 def test_relative_poses_start_at_first_finite_pose():

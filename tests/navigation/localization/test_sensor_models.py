@@ -32,10 +32,10 @@ def room(yaw: float = 0.0) -> MapLikelihoods:
 def beams_in_room(x: float, y: float, yaw: float, count: int = 36) -> Beams:
     """Return the beams of a laser at the robot's center."""
     angles = np.linspace(-pi, pi, count, endpoint=False)
-    along = np.stack((np.cos(angles + yaw), np.sin(angles + yaw)), axis=-1)
-    walls = np.where(along > 0, (np.array((5.975, 3.975)) - (x, y)), (np.array((0.025, 0.025)) - (x, y)))
-    along = np.where(np.abs(along) < 1e-9, np.copysign(1e-9, walls), along)
-    ranges = (walls / along).min(axis=1)
+    directions = np.stack((np.cos(angles + yaw), np.sin(angles + yaw)), axis=-1)
+    walls = np.where(directions > 0, (np.array((5.975, 3.975)) - (x, y)), (np.array((0.025, 0.025)) - (x, y)))
+    directions = np.where(np.abs(directions) < 1e-9, np.copysign(1e-9, walls), directions)
+    ranges = (walls / directions).min(axis=1)
     ends = ranges[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     return Beams((0.0, 0.0), ends, ranges, 12.0)
 
@@ -82,11 +82,11 @@ def test_beams_that_few_particles_explain_are_skipped() -> None:
     beams.end_points[:6] *= 0.4  # a person stands in these beams
     poses = np.array([(2.0, 1.5, 0.0), (2.1, 1.5, 0.0), (1.4, 1.5, 0.0)])
     likelihoods = room()
-    plain = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
+    without_skipping = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
     skipped = likelihoods.likelihoods("likelihood_field_prob", poses, beams, BeamSkipping())
     remaining_beams = Beams((0.0, 0.0), beams.end_points[6:], beams.ranges[6:], 12.0)
     assert skipped == pytest.approx(likelihoods.likelihoods("likelihood_field_prob", poses, remaining_beams), rel=1e-5)
-    assert plain[2] > 1.5 * skipped[2]
+    assert without_skipping[2] > 1.5 * skipped[2]
 
 
 def test_random_poses_are_in_free_cells() -> None:

@@ -49,8 +49,8 @@ def drive(test: SteppedSimulation, corners: list[tuple[float, float]], speed: fl
             if distance < 0.12:
                 break
             bearing = (atan2(y - pose[1], x - pose[0]) - rpy_from_quaternion(pose[3:])[2] + pi) % (2 * pi) - pi
-            ahead = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
-            test.drive(ahead if abs(bearing) < 1.0 else 0.0, max(-1.5, min(1.5, 2.5 * bearing)))
+            forward_speed = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
+            test.drive(forward_speed if abs(bearing) < 1.0 else 0.0, max(-1.5, min(1.5, 2.5 * bearing)))
             test.advance(0.1)
     test.drive(0.0)
     test.advance(0.5)
@@ -115,8 +115,13 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
                 (x, y, z), yaw = collision.pose.pose.xyz, collision.pose.pose.rpy[2]
                 if len(size) != 3 or abs(z - height) > size[2] / 2:
                     continue
-                half = np.array(size[:2]) / 2
-                corners = [(-half[0], -half[1]), (half[0], -half[1]), (half[0], half[1]), (-half[0], half[1])]
+                half_size = np.array(size[:2]) / 2
+                corners = [
+                    (-half_size[0], -half_size[1]),
+                    (half_size[0], -half_size[1]),
+                    (half_size[0], half_size[1]),
+                    (-half_size[0], half_size[1]),
+                ]
                 corners = [(x + a * cos(yaw) - b * sin(yaw), y + a * sin(yaw) + b * cos(yaw)) for a, b in corners]
                 segments += list(pairwise([*corners, corners[0]]))
     return np.array(segments)
@@ -124,10 +129,10 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
 
 def distances(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the distance of points (n, 2) from the nearest face in meters, shape (n,)."""
-    start, along = faces[:, 0], faces[:, 1] - faces[:, 0]
+    start, directions = faces[:, 0], faces[:, 1] - faces[:, 0]
     offsets = points[:, None] - start
-    share = np.clip((offsets * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
-    nearest: np.ndarray = np.linalg.norm(offsets - share[..., None] * along, axis=2).min(axis=1)
+    share = np.clip((offsets * directions).sum(axis=2) / (directions**2).sum(axis=1), 0, 1)
+    nearest: np.ndarray = np.linalg.norm(offsets - share[..., None] * directions, axis=2).min(axis=1)
     return nearest
 
 
@@ -136,11 +141,11 @@ def visible_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
     points = []
     for start, end in faces:
         length = float(np.hypot(*(end - start)))
-        along = (end - start) / length
-        row = start + np.linspace(0.02, length - 0.02, max(2, round(length / 0.05)))[:, None] * along
+        direction = (end - start) / length
+        row = start + np.linspace(0.02, length - 0.02, max(2, round(length / 0.05)))[:, None] * direction
         free = np.ones(len(row), dtype=bool)
         for distance in (0.1, 0.2):
-            cells = grid.cells_of(row + distance * np.array((along[1], -along[0])))
+            cells = grid.cells_of(row + distance * np.array((direction[1], -direction[0])))
             free &= grid.contains(cells)
             free[free] = grid.cells[tuple(cells[free].T)] == FREE
         points.append(row[free])

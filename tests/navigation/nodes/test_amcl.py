@@ -88,8 +88,8 @@ class House:
                 if distance < 0.12:
                     break
                 bearing = (atan2(y - pose[1], x - pose[0]) - rpy_from_quaternion(pose[3:])[2] + pi) % (2 * pi) - pi
-                ahead = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
-                test.drive(ahead if abs(bearing) < 1.0 else 0.0, max(-1.0, min(1.0, 2.0 * bearing)))
+                forward_speed = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
+                test.drive(forward_speed if abs(bearing) < 1.0 else 0.0, max(-1.0, min(1.0, 2.0 * bearing)))
                 test.advance(0.1)
                 try:
                     self.errors.append(self.error()[0])

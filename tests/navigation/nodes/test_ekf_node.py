@@ -19,8 +19,8 @@ X, Y, YAW, VX, VY, VYAW, AX = 0, 1, 5, 6, 7, 11, 12
 START = 100.0
 
 
-def config(*used):
-    return [index in used for index in range(15)]
+def sensor_config(*measured_indices):
+    return [index in measured_indices for index in range(15)]
 
 
 @pytest.fixture
@@ -47,8 +47,8 @@ def now(test):
     return test.clock.now_ns() / 1e9
 
 
-def odometry(test, x=0.0, y=0.0, yaw=0.0, vx=0.0, vyaw=0.0, variance=0.01, at=None, frame="odom"):
-    message = with_header(get_message("nav_msgs/msg/Odometry")(), now(test) if at is None else at, frame)
+def odometry(test, x=0.0, y=0.0, yaw=0.0, vx=0.0, vyaw=0.0, variance=0.01, stamp=None, frame="odom"):
+    message = with_header(get_message("nav_msgs/msg/Odometry")(), now(test) if stamp is None else stamp, frame)
     message.child_frame_id = "base_link"
     message.pose.pose.position.x, message.pose.pose.position.y = x, y
     orientation = message.pose.pose.orientation
@@ -83,7 +83,14 @@ def planar(message):
 
 
 async def test_odometry_and_gyroscope_are_fused(test):
-    start(test, odom0="wheels", odom0_config=config(VX, VY), imu0="imu", imu0_config=config(VYAW), frequency=30.0)
+    start(
+        test,
+        odom0="wheels",
+        odom0_config=sensor_config(VX, VY),
+        imu0="imu",
+        imu0_config=sensor_config(VYAW),
+        frequency=30.0,
+    )
     filtered, tf = test.record("/odometry/filtered"), test.record("/tf")
     for _ in range(200):
         test.publish("/wheels", odometry(test, vx=1.0, vyaw=9.0, variance=1e-4))
@@ -104,7 +111,7 @@ async def test_odometry_and_gyroscope_are_fused(test):
 
 
 async def test_publishing_starts_with_first_measurement_and_continues(test):
-    start(test, odom0="wheels", odom0_config=config(VX))
+    start(test, odom0="wheels", odom0_config=sensor_config(VX))
     filtered = test.record("/odometry/filtered")
     await test.advance(1.0)
     assert len(filtered) == 0
@@ -115,7 +122,7 @@ async def test_publishing_starts_with_first_measurement_and_continues(test):
 
 
 async def test_outlier_is_rejected(test):
-    parameters = {"odom0": "wheels", "odom0_config": config(X, Y, YAW), "odom0_pose_rejection_threshold": 4.0}
+    parameters = {"odom0": "wheels", "odom0_config": sensor_config(X, Y, YAW), "odom0_pose_rejection_threshold": 4.0}
     start(test, **parameters)
     filtered = test.record("/odometry/filtered")
     for step in range(50):
@@ -125,7 +132,7 @@ async def test_outlier_is_rejected(test):
 
 
 async def test_imu_with_rotation_and_offset_is_transformed(test):
-    start(test, imu0="imu", imu0_config=config(YAW, VYAW, AX), publish_acceleration=True)
+    start(test, imu0="imu", imu0_config=sensor_config(YAW, VYAW, AX), publish_acceleration=True)
     filtered, acceleration = test.record("/odometry/filtered"), test.record("/accel/filtered")
     publish_transform(test, "base_link", "imu_link", x=0.3, yaw=pi / 2, static=True)
     await test.settle()
@@ -138,7 +145,7 @@ async def test_imu_with_rotation_and_offset_is_transformed(test):
 
 
 async def test_gravity_is_removed_if_configured(test):
-    flags = {"imu0": "imu", "imu0_config": config(AX, 14), "two_d_mode": False, "publish_acceleration": True}
+    flags = {"imu0": "imu", "imu0_config": sensor_config(AX, 14), "two_d_mode": False, "publish_acceleration": True}
     start(test, **flags, imu0_remove_gravitational_acceleration=True)
     acceleration = test.record("/accel/filtered")
     for _ in range(5):
@@ -149,7 +156,7 @@ async def test_gravity_is_removed_if_configured(test):
 
 
 async def test_missing_frame_is_reported(test):
-    start(test, imu0="imu", imu0_config=config(VYAW))
+    start(test, imu0="imu", imu0_config=sensor_config(VYAW))
     filtered = test.record("/odometry/filtered")
     for _ in range(3):
         test.publish("/imu", imu(test, frame="nowhere"))
@@ -160,7 +167,7 @@ async def test_missing_frame_is_reported(test):
 
 
 async def test_map_world_frame_publishes_odom_transform(test):
-    start(test, pose0="fix", pose0_config=config(X, Y, YAW), world_frame="map", transform_time_offset=0.5)
+    start(test, pose0="fix", pose0_config=sensor_config(X, Y, YAW), world_frame="map", transform_time_offset=0.5)
     tf = test.record("/tf", TFMessage)
     publish_transform(test, "odom", "base_link", x=2.0)
     pose = with_header(get_message("geometry_msgs/msg/PoseWithCovarianceStamped")(), now(test), "map")
@@ -174,8 +181,8 @@ async def test_map_world_frame_publishes_odom_transform(test):
 
 
 async def test_differential_and_relative_poses_are_fused(test):
-    start(test, odom0="wheels", odom0_config=config(X, Y, YAW), odom0_differential=True)
-    start(test, odom0="wheels", odom0_config=config(X, Y, YAW), odom0_relative=True, publish_tf=False)
+    start(test, odom0="wheels", odom0_config=sensor_config(X, Y, YAW), odom0_differential=True)
+    start(test, odom0="wheels", odom0_config=sensor_config(X, Y, YAW), odom0_relative=True, publish_tf=False)
     filtered = test.record("/odometry/filtered")
     for step in range(30):
         test.publish("/wheels", odometry(test, x=7.0, y=0.05 * step, yaw=pi / 2, variance=1e-6))
@@ -187,7 +194,7 @@ async def test_differential_and_relative_poses_are_fused(test):
 
 
 async def test_pose_is_set_by_topic_and_service(test):
-    start(test, odom0="wheels", odom0_config=config(VX))
+    start(test, odom0="wheels", odom0_config=sensor_config(VX))
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test))
     await test.advance(0.2)
@@ -200,13 +207,13 @@ async def test_pose_is_set_by_topic_and_service(test):
     pose = with_header(message_type(), now(test), "odom")
     pose.pose.pose.position.x, pose.pose.pose.orientation.w = 5.0, 1.0
     await test.call("/set_pose", get_service("robot_localization/srv/SetPose").Request(pose=pose))
-    test.publish("/wheels", odometry(test, vx=3.0, at=now(test) - 0.1))
+    test.publish("/wheels", odometry(test, vx=3.0, stamp=now(test) - 0.1))
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(5.0)
 
 
 async def test_toggle_and_enable_services_control_filter(test):
-    start(test, odom0="wheels", odom0_config=config(X), disabled_at_startup=True)
+    start(test, odom0="wheels", odom0_config=sensor_config(X), disabled_at_startup=True)
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test, x=1.0))
     await test.advance(0.5)
@@ -230,10 +237,10 @@ async def test_filter_resets_when_simulated_time_jumps_back(test):
         for tenth in range(first, last):
             test.publish("/clock", clock(clock=Time.from_nanoseconds(tenth * 100_000_000)))
             await test.settle()
-            test.publish("/wheels", odometry(test, x=x, at=tenth / 10.0))
+            test.publish("/wheels", odometry(test, x=x, stamp=tenth / 10.0))
             await test.settle()
 
-    start(test, odom0="wheels", odom0_config=config(X), use_sim_time=True)
+    start(test, odom0="wheels", odom0_config=sensor_config(X), use_sim_time=True)
     filtered = test.record("/odometry/filtered")
     await run(300, 320, 5.0)
     assert planar(filtered.last)[0] == pytest.approx(5.0)
@@ -244,11 +251,11 @@ async def test_filter_resets_when_simulated_time_jumps_back(test):
 
 
 async def test_old_message_is_ignored(test):
-    start(test, odom0="wheels", odom0_config=config(X))
+    start(test, odom0="wheels", odom0_config=sensor_config(X))
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test, x=1.0))
     await test.advance(0.2)
-    test.publish("/wheels", odometry(test, x=9.0, at=START - 5.0))
+    test.publish("/wheels", odometry(test, x=9.0, stamp=START - 5.0))
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(1.0)
     assert len(log_texts(test, "WARN")) == 1
@@ -260,7 +267,7 @@ async def test_velocity_commands_move_estimate(test):
     start(
         test,
         odom0="wheels",
-        odom0_config=config(VX),
+        odom0_config=sensor_config(VX),
         use_control=True,
         control_config=flags,
         acceleration_limits=limits,
@@ -276,7 +283,7 @@ async def test_velocity_commands_move_estimate(test):
 
 
 async def test_ukf_node_publishes_estimate(test):
-    node = start(test, UkfNode, odom0="wheels", odom0_config=config(X, VX))
+    node = start(test, UkfNode, odom0="wheels", odom0_config=sensor_config(X, VX))
     filtered = test.record("/odometry/filtered")
     for step in range(50):
         test.publish("/wheels", odometry(test, x=0.1 * step, vx=1.0))
@@ -308,7 +315,7 @@ async def test_invalid_parameters_are_rejected(test, parameters, text):
 
 
 async def test_unknown_sensor_parameters_are_reported(test):
-    start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
+    start(test, odom0="wheels", odom0_config=sensor_config(X), odom0_diferential=True, odom2_config=sensor_config(X))
     (misspelled,) = log_texts(test, "WARN")
     assert misspelled.startswith(
         "'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'"

@@ -130,9 +130,9 @@ async def test_closed_loop_starts_from_measured_velocity(start_smoother, harness
 
 
 async def test_six_axes_may_be_limited(start_smoother, harness):
-    six = {name: [sign] * 6 for name, sign in (("max_velocity", 1.0), ("min_velocity", -1.0))}
-    six |= {"max_accel": [2.0] * 6, "max_decel": [-2.0] * 6, "deadband_velocity": [0.0] * 6}
-    smoother = start_smoother(**six)
+    axis_parameters = {name: [sign] * 6 for name, sign in (("max_velocity", 1.0), ("min_velocity", -1.0))}
+    axis_parameters |= {"max_accel": [2.0] * 6, "max_decel": [-2.0] * 6, "deadband_velocity": [0.0] * 6}
+    smoother = start_smoother(**axis_parameters)
     await smoother.send(1.0, 1.0)
     await harness.clock.advance(0.06)
     assert (smoother.published[0].linear.x, smoother.published[0].angular.z) == pytest.approx((0.1, 0.1))
@@ -176,7 +176,7 @@ async def test_velocity_smoother_is_a_managed_node(start_smoother, harness):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "text"),
+    ("invalid_parameters", "text"),
     [
         ({"max_decel": [2.5, 0.0, 3.2]}, "max_decel must not be positive"),
         ({"max_velocity": [0.5]}, "3 entries"),
@@ -184,8 +184,8 @@ async def test_velocity_smoother_is_a_managed_node(start_smoother, harness):
         ({"smoothing_frequency": 0.0}, "smoothing_frequency must be more than 0"),
     ],
 )
-async def test_invalid_parameters_are_reported(start_smoother, logged, wrong, text):
-    start_smoother(autostart_node=False, **wrong).node.node.trigger_configure()
+async def test_invalid_parameters_are_reported(start_smoother, logged, invalid_parameters, text):
+    start_smoother(autostart_node=False, **invalid_parameters).node.node.trigger_configure()
     assert text in logged("ERROR")[0]
 
 

@@ -55,9 +55,9 @@ def highest_cost(robot: Costmap, path: np.ndarray) -> int:
     return int(np.where(costs == UNKNOWN, 0, costs).max())
 
 
-def dijkstra(price: np.ndarray, source: tuple[int, int]) -> np.ndarray:
+def dijkstra(crossing_cost: np.ndarray, source: tuple[int, int]) -> np.ndarray:
     """Return the costs of the cheapest paths along rows, columns and diagonals that cut no corner of an obstacle."""
-    rows, columns = price.shape
+    rows, columns = crossing_cost.shape
     number = np.arange(rows * columns).reshape(rows, columns)
     begins, ends, weights = [], [], []
     for row_step, column_step in ((0, 1), (1, 0), (1, 1), (1, -1)):
@@ -65,15 +65,15 @@ def dijkstra(price: np.ndarray, source: tuple[int, int]) -> np.ndarray:
         a = (slice(0, rows - row_step), slice(margin, columns - step))
         b = (slice(row_step, rows), slice(margin + column_step, columns - step + column_step))
         with np.errstate(invalid="ignore"):
-            weight = hypot(row_step, column_step) * (price[a] + price[b]) / 2.0
+            weight = hypot(row_step, column_step) * (crossing_cost[a] + crossing_cost[b]) / 2.0
         if row_step and column_step:  # a diagonal step must not cut a corner
             target_slice = (slice(0, rows - row_step), slice(margin + column_step, columns - step + column_step))
             below = (slice(row_step, rows), slice(margin, columns - step))
-            weight = np.where(np.isfinite(price[target_slice] + price[below]), weight, np.inf)
-        fine = np.isfinite(weight)
-        begins.append(number[a][fine])
-        ends.append(number[b][fine])
-        weights.append(weight[fine])
+            weight = np.where(np.isfinite(crossing_cost[target_slice] + crossing_cost[below]), weight, np.inf)
+        is_finite = np.isfinite(weight)
+        begins.append(number[a][is_finite])
+        ends.append(number[b][is_finite])
+        weights.append(weight[is_finite])
     graph = load_scipy("sparse").coo_matrix(
         (np.concatenate(weights), (np.concatenate(begins), np.concatenate(ends))), shape=(number.size, number.size)
     )
@@ -161,8 +161,8 @@ def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
         assert not np.isfinite(run_to_end(compute_potential(price, (2, 2)))[57, 57])
         return
     assert highest_cost(robot, path) <= MAX_PASSABLE
-    middles = (path[1:, :2] + path[:-1, :2]) / 2.0
-    cells = robot.grid.cells_of(middles)
+    midpoints = (path[1:, :2] + path[:-1, :2]) / 2.0
+    cells = robot.grid.cells_of(midpoints)
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T) / RESOLUTION
     assert (price[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL_COST
 
@@ -275,15 +275,18 @@ def test_start_in_obstacle_is_rejected_and_start_near_it_is_left():
 
 
 def corner() -> np.ndarray:
-    along = np.arange(0.05, 2.0, 0.05)
+    offsets = np.arange(0.05, 2.0, 0.05)
     return np.concatenate(
-        (np.column_stack((along, np.full_like(along, 0.05))), np.column_stack((np.full_like(along, 2.0), along + 0.05)))
+        (
+            np.column_stack((offsets, np.full_like(offsets, 0.05))),
+            np.column_stack((np.full_like(offsets, 2.0), offsets + 0.05)),
+        )
     )
 
 
 def bend(points: np.ndarray) -> float:
-    ahead = np.diff(points, axis=0)
-    angles = np.diff(np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0])))
+    segments = np.diff(points, axis=0)
+    angles = np.diff(np.unwrap(np.arctan2(segments[:, 1], segments[:, 0])))
     return float(np.abs(angles).max())
 
 
@@ -298,8 +301,8 @@ def test_smoothing_matches_relaxation():
     smooth_poses, _ = smooth_path(corner(), Smoothing(do_refinement=False))
     reference, original = corner(), corner()
     for _ in range(500):
-        middle = reference[:-2] + reference[2:]
-        reference[1:-1] += 0.2 * (original[1:-1] - reference[1:-1]) + 0.3 * (middle - 2.0 * reference[1:-1])
+        neighbor_sum = reference[:-2] + reference[2:]
+        reference[1:-1] += 0.2 * (original[1:-1] - reference[1:-1]) + 0.3 * (neighbor_sum - 2.0 * reference[1:-1])
     assert smooth_poses == pytest.approx(reference, abs=1e-9)
 
 
@@ -317,5 +320,5 @@ def test_smoothing_keeps_cusps():
     points = np.concatenate((way_out, way_back))
     smooth_poses, _ = smooth_path(points, Smoothing())
     assert smooth_poses[9] == pytest.approx(points[9])
-    loose, _ = smooth_path(points, Smoothing(enforce_path_inversion=False))
-    assert loose[9] != pytest.approx(points[9])
+    without_inversion, _ = smooth_path(points, Smoothing(enforce_path_inversion=False))
+    assert without_inversion[9] != pytest.approx(points[9])

@@ -38,10 +38,10 @@ def ranges_at(walls, pose, count=360, noise=0.01, rng=None, farthest=12.0):
     """Return the ranges and angles of a laser at a pose, shape (count,); infinite without a wall in range."""
     angles = np.linspace(-pi, pi, count, endpoint=False)
     x, y = np.cos(angles + pose[2])[:, None], np.sin(angles + pose[2])[:, None]
-    start, along = walls[:, 0] - pose[:2], walls[:, 1] - walls[:, 0]
+    start, directions = walls[:, 0] - pose[:2], walls[:, 1] - walls[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        cross_product = x * along[:, 1] - y * along[:, 0]
-        distance = (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / cross_product
+        cross_product = x * directions[:, 1] - y * directions[:, 0]
+        distance = (start[:, 0] * directions[:, 1] - start[:, 1] * directions[:, 0]) / cross_product
         share = (start[:, 0] * y - start[:, 1] * x) / cross_product
     ranges = np.where((distance > 0) & (share >= 0) & (share <= 1), distance, np.inf).min(axis=1)
     if rng is not None:

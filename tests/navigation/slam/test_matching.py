@@ -57,23 +57,23 @@ def test_loop_search_corrects_error_of_meters(reference):
 def test_branch_and_bound_matches_exhaustive_search(reference):
     scan = scan_at(WALLS, np.array([-2.0, -3.1, 0.2]), count=60)
     search = Search(dimension=0.6, resolution=0.05, smear_deviation=0.1, angle_offset=0.2, angle_resolution=0.02)
-    guess = np.array([-1.9, -3.0, 0.1])
+    initial_pose = np.array([-1.9, -3.0, 0.1])
     likelihood = LikelihoodField(reference.points, search.cell, search.smear_deviation)
-    pose, response = run_to_end(best_pose(likelihood, scan.points, guess, search))
+    pose, response = run_to_end(best_pose(likelihood, scan.points, initial_pose, search))
     grid, _ = likelihood.level(0)
     step = min(search.angle_resolution, 1.5 * 0.05 / np.quantile(np.hypot(*scan.points.T), 0.8))
     count = int(np.ceil(search.angle_offset / step - 1e-9))
-    best = 0.0
+    best_score = 0.0
     for angle_index, row, column in product(range(-count, count + 1), range(-6, 7), range(-6, 7)):
-        yaw = guess[2] + angle_index * step
-        x = np.cos(yaw) * scan.points[:, 0] - np.sin(yaw) * scan.points[:, 1] + guess[0] - likelihood.corner[0]
-        y = np.sin(yaw) * scan.points[:, 0] + np.cos(yaw) * scan.points[:, 1] + guess[1] - likelihood.corner[1]
+        yaw = initial_pose[2] + angle_index * step
+        x = np.cos(yaw) * scan.points[:, 0] - np.sin(yaw) * scan.points[:, 1] + initial_pose[0] - likelihood.corner[0]
+        y = np.sin(yaw) * scan.points[:, 0] + np.cos(yaw) * scan.points[:, 1] + initial_pose[1] - likelihood.corner[1]
         cells = np.floor(np.stack((y, x)) / search.cell).astype(int) + np.array([[row], [column]])
         is_inside = (cells >= 0).all(axis=0) & (cells[0] < grid.shape[0]) & (cells[1] < grid.shape[1])
         score = np.where(is_inside, grid[np.where(is_inside, cells[0], 0), np.where(is_inside, cells[1], 0)], 0).mean()
         distance = max(1 - 0.2 * (row**2 + column**2) * 0.05**2 / 0.5, 0.5)
-        best = max(best, score * distance * max(1 - 0.2 * (angle_index * step) ** 2, 0.9))
-    assert response == pytest.approx(best, abs=1e-6)
+        best_score = max(best_score, score * distance * max(1 - 0.2 * (angle_index * step) ** 2, 0.9))
+    assert response == pytest.approx(best_score, abs=1e-6)
     assert np.abs(relative_pose(np.array([-2.0, -3.1, 0.2]), pose))[:2].max() < 0.05
 
 
@@ -82,9 +82,9 @@ def test_match_in_corridor_keeps_odometry_along_it():
     rng = np.random.default_rng(2)
     poses = np.array([[0.2 * step, 0.0, 0.0] for step in range(5)])
     reference = Reference([scan_at(walls, pose, rng=rng, farthest=6) for pose in poses], poses)
-    true, guess = np.array([1.3, 0.1, 0.05]), np.array([1.1, 0.0, 0.0])
-    match = run_to_end(match_scan(reference, scan_at(walls, true, rng=rng, farthest=6), guess, Search()))
-    assert match.pose[0] == pytest.approx(guess[0], abs=0.01)
+    true, initial_pose = np.array([1.3, 0.1, 0.05]), np.array([1.1, 0.0, 0.0])
+    match = run_to_end(match_scan(reference, scan_at(walls, true, rng=rng, farthest=6), initial_pose, Search()))
+    assert match.pose[0] == pytest.approx(initial_pose[0], abs=0.01)
     assert match.pose[1:] == pytest.approx(true[1:], abs=0.005)
     assert match.information[0, 0] < 1e-2 * match.information[1, 1]
 

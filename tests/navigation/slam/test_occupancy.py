@@ -53,11 +53,11 @@ def test_redrawn_scan_leaves_no_trace_at_old_pose():
         redrawn_map.draw(number, scan, poses[number] + (0.4, -0.3, 0.2))
     for number in (1, 0, 2):
         redrawn_map.draw(number, scans[number], poses[number])
-    still = OccupancyMap(0.05)
+    expected_map = OccupancyMap(0.05)
     for number, scan in enumerate(scans):
-        still.draw(number, scan, poses[number])
-    assert (redrawn_map.grid().cells == still.grid().cells).all()
-    assert (redrawn_map.grid().x, redrawn_map.grid().y) == (still.grid().x, still.grid().y)
+        expected_map.draw(number, scan, poses[number])
+    assert (redrawn_map.grid().cells == expected_map.grid().cells).all()
+    assert (redrawn_map.grid().x, redrawn_map.grid().y) == (expected_map.grid().x, expected_map.grid().y)
     for number in range(3):
         redrawn_map.erase(number)
     assert redrawn_map.grid() is None
@@ -72,10 +72,10 @@ def test_map_matches_apartment():
         occupancy.draw(number, scan_at(walls, pose, count=720), pose)
     grid = occupancy.grid()
     occupied_centers = grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
-    start, along = walls[:, 0], walls[:, 1] - walls[:, 0]
+    start, directions = walls[:, 0], walls[:, 1] - walls[:, 0]
     offsets = occupied_centers[:, None] - start
-    share = np.clip((offsets * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
-    distances = np.linalg.norm(offsets - share[..., None] * along, axis=2).min(axis=1)
+    share = np.clip((offsets * directions).sum(axis=2) / (directions**2).sum(axis=1), 0, 1)
+    distances = np.linalg.norm(offsets - share[..., None] * directions, axis=2).min(axis=1)
     assert len(occupied_centers) > 500
     assert distances.max() < 0.05 * 0.7072  # half the diagonal of a cell
     free = grid.cells == FREE

@@ -73,8 +73,8 @@ def test_closed_loop_matches_batch_least_squares():
     start = graph.poses.copy()
     run_to_end(graph.solve())
 
-    def residuals(flat):
-        poses = np.concatenate((start[:1], flat.reshape(-1, 3)))
+    def residuals(is_planar):
+        poses = np.concatenate((start[:1], is_planar.reshape(-1, 3)))
         return weighted_residuals(graph, poses).ravel()
 
     batch = load_scipy("optimize").least_squares(residuals, start[1:].ravel(), xtol=1e-14, ftol=1e-14, gtol=1e-14)

@@ -95,12 +95,12 @@ class Glb:
         surface = self.document["materials"][primitive["material"]]["pbrMetallicRoughness"]
         factor = np.array(surface["baseColorFactor"])
         linear = factor[:3]
-        seen = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+        encoded = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
         self.drawn.append(
             Drawn(
                 link,
                 (placed.min(0).tolist(), placed.max(0).tolist()),
-                "#" + "".join(f"{round(part * 255):02x}" for part in seen),
+                "#" + "".join(f"{round(part * 255):02x}" for part in encoded),
                 float(factor[3]),
                 "baseColorTexture" in surface,
             )

@@ -58,16 +58,16 @@ def test_glb_meshes_match_size_and_color_of_page(tmp_path):
         primitive.link: primitive
         for primitive in Glb(export_snapshot(snapshot(robot_of(golden_links(tmp_path))), "glb")).drawn
     }
-    wrong = {}
-    for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
+    mismatches = {}
+    for name, (_, _, _, _, (lower_corner, upper_corner), color, opacity) in GOLDEN.items():
         result = drawn[name]
         if not (
-            result.bounds[0] == pytest.approx(least, abs=1e-5)
-            and result.bounds[1] == pytest.approx(most, abs=1e-5)
+            result.bounds[0] == pytest.approx(lower_corner, abs=1e-5)
+            and result.bounds[1] == pytest.approx(upper_corner, abs=1e-5)
             and (result.color, result.opacity) == (color, pytest.approx(opacity))
         ):
-            wrong[name] = result
-    assert wrong == {}
+            mismatches[name] = result
+    assert mismatches == {}
 
 
 def textured_dae() -> str:

@@ -54,8 +54,8 @@ def test_same_files_give_the_same_bytes(tmp_path):
 def test_html_contains_all_server_messages():
     logged = recorded(page(GRIPPER))
     types = [message["type"] for message in logged["messages"]]
-    for needed in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
-        assert needed in types
+    for message_type in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
+        assert message_type in types
     assert types[-1] == "frame_table"
     controls = next(message for message in logged["messages"] if message["type"] == "joints")["controls"]
     assert [(control["name"], control["mimic"]) for control in controls] == [
@@ -133,9 +133,11 @@ def test_html_contains_no_local_paths(tmp_path):
     assert '"place":{' not in text
 
 
-@pytest.mark.parametrize(("name", "known"), [("a.html", True), ("b.GLB", True), ("c.gltf", False), ("html", False)])
-def test_export_format_is_recognized_by_suffix(name, known):
-    assert (format_of(name) is not None) is known
+@pytest.mark.parametrize(
+    ("name", "has_known_suffix"), [("a.html", True), ("b.GLB", True), ("c.gltf", False), ("html", False)]
+)
+def test_export_format_is_recognized_by_suffix(name, has_known_suffix):
+    assert (format_of(name) is not None) is has_known_suffix
 
 
 async def test_html_contains_markers():

@@ -45,11 +45,11 @@ async def talk(publisher, period: float) -> None:
 def frame_of(data: bytes) -> dict[int, np.ndarray]:
     kind, count, *_ = struct.unpack_from("<IIII", data)
     assert kind == 3
-    at, samples_by_series = 16, {}
+    offset, samples_by_series = 16, {}
     for _ in range(count):
-        identity, length = struct.unpack_from("<II", data, at)
-        samples_by_series[identity] = np.frombuffer(data, "<f8", 3 * length, at + 8).reshape(3, length)
-        at += 8 + 24 * length
+        identity, length = struct.unpack_from("<II", data, offset)
+        samples_by_series[identity] = np.frombuffer(data, "<f8", 3 * length, offset + 8).reshape(3, length)
+        offset += 8 + 24 * length
     return samples_by_series
 
 
@@ -151,8 +151,10 @@ async def test_two_pages_share_subscription():
 
 async def test_latched_message_is_shown():
     async with opened() as (world, client):
-        lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        world.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", lasting).publish(FLOAT(data=0.05))
+        transient_local = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        world.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", transient_local).publish(
+            FLOAT(data=0.05)
+        )
         await client.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=["/map_scale"])
         message = await client.until("topic_message")
         assert message["fields"][0]["value"] == "0.05"
@@ -177,9 +179,9 @@ async def test_unknown_and_mixed_topic_types_are_reported():
         node.create_publisher(TWIST, "/mixed", 10)
         node.create_publisher("no_such_msgs/msg/Thing", "/strange", 10)
         await client.send("watch_topics", wants_list=False, measured_topics=["/mixed", "/strange"], opened_topics=[])
-        mixed, strange = (await client.until("topic_figures"))["traffic"]
+        mixed, unknown_type = (await client.until("topic_figures"))["traffic"]
         assert "more than one type: geometry_msgs/msg/Twist, std_msgs/msg/Float64" in mixed["error"]
-        assert "no_such_msgs" in strange["error"]
+        assert "no_such_msgs" in unknown_type["error"]
         await client.send("request_fields", topic="/strange")
         assert "no_such_msgs" in (await client.until("topic_fields"))["error"]
 
@@ -340,8 +342,8 @@ async def test_parameters_are_set_or_rejected_with_reason():
         await client.until("node_parameters")
 
         async def put(name, kind, *values):
-            wanted = {"node": "/tuned", "name": name, "kind": kind, "values": list(values)}
-            await client.socket.send_json({"type": "set_parameter", **wanted})
+            expected = {"node": "/tuned", "name": name, "kind": kind, "values": list(values)}
+            await client.socket.send_json({"type": "set_parameter", **expected})
             return await client.until("parameter_result")
 
         assert (await put("speed.most", "double", "0.5"))["successful"]
@@ -352,8 +354,8 @@ async def test_parameters_are_set_or_rejected_with_reason():
         assert not high["successful"]
         assert high["reason"]
         assert not (await put("fixed", "integer", "8"))["successful"]
-        wrong = await put("big", "integer", "lots")
-        assert (wrong["successful"], wrong["reason"]) == (False, "'lots' is not an integer")
+        rejection = await put("big", "integer", "lots")
+        assert (rejection["successful"], rejection["reason"]) == (False, "'lots' is not an integer")
         assert "64 bits" in (await put("big", "integer", str(2**64)))["reason"]
 
 

@@ -29,17 +29,17 @@ async def test_plots_follow_time_back_and_are_complete_in_live_mode():
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
         await eventually(lambda: subscriptions(world, "/speed") == 1)
-        between = []
+        times_between = []
         for number in range(5):
             publisher.publish(FLOAT(data=float(number)))
             await asyncio.sleep(0.5)
-            between.append(world.graph.timebase.now_ns() / 1e9)
+            times_between.append(world.graph.timebase.now_ns() / 1e9)
             await asyncio.sleep(0.5)
-        await client.send("seek_time", position=between[2])
+        await client.send("seek_time", position=times_between[2])
         await plotted(client, [0.0, 1.0, 2.0])
         publisher.publish(FLOAT(data=9.0))
         await client.send("watch_series", series=SERIES, seconds=1.0)
-        await client.send("seek_time", position=between[3])
+        await client.send("seek_time", position=times_between[3])
         await plotted(client, [3.0])
         await client.send("watch_series", series=SERIES, seconds=60)
         await plotted(client, [0.0, 1.0, 2.0, 3.0])
@@ -56,9 +56,9 @@ async def test_added_series_begins_with_stored_samples():
         for number in range(3):
             publisher.publish(FLOAT(data=float(number)))
             await asyncio.sleep(0.5)
-        async with page(world.viewer) as late:
-            await late.send("watch_series", series=SERIES, seconds=30)
-            await plotted(late, [0.0, 1.0, 2.0])
+        async with page(world.viewer) as late_client:
+            await late_client.send("watch_series", series=SERIES, seconds=30)
+            await plotted(late_client, [0.0, 1.0, 2.0])
 
 
 @skipping

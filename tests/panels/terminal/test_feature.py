@@ -77,12 +77,12 @@ async def open_terminal(client: Any) -> Reader:
     return Reader(client)
 
 
-async def state(client: Any, *, of: int = 1, **fields: Any) -> dict[str, Any]:
+async def wait_for_state(client: Any, *, terminal: int = 1, **fields: Any) -> dict[str, Any]:
     """Wait until a terminal has these fields."""
     while True:
         message = await client.until("terminals")
         for item in message["terminals"]:
-            if item["id"] == of and all(item[name] == value for name, value in fields.items()):
+            if item["id"] == terminal and all(item[name] == value for name, value in fields.items()):
                 return item  # type: ignore[no-any-return]
 
 
@@ -139,9 +139,9 @@ async def test_pages_of_other_users_are_rejected(tmp_path: Path, monkeypatch: py
 @pytest.mark.parametrize("query", ["", "?token=wrong"])
 async def test_websocket_requires_token(tmp_path: Path, query: str) -> None:
     async with enabled(tmp_path) as world, aiohttp.ClientSession() as browser:
-        plain = world.viewer.url.partition("?")[0]
+        url_without_token = world.viewer.url.partition("?")[0]
         with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
-            await browser.ws_connect(f"{plain}ws{query}")
+            await browser.ws_connect(f"{url_without_token}ws{query}")
         assert refused.value.status == 401
 
 
@@ -175,9 +175,9 @@ async def test_exited_shell_is_shown_and_restarted(tmp_path: Path) -> None:
     async with enabled(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("echo first; exit 4\r")
-        await state(client, status=4)
+        await wait_for_state(client, status=4)
         await client.send("restart_terminal", terminal=1, columns=100, rows=30)
-        await state(client, status=None)
+        await wait_for_state(client, status=None)
         await reader.type("stty size\r")
         await reader.until("30 100")
 
@@ -193,9 +193,9 @@ async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
             other = Reader(second)
             assert (await other.next())["is_replay"]
             assert "remember\r\n" in other.text
-            await state(first, shown="elsewhere")
+            await wait_for_state(first, shown="elsewhere")
             await first.send("write_terminal", terminal=1, text="echo not'hing'\r", is_binary=False)
-            await state(first, shown="elsewhere")
+            await wait_for_state(first, shown="elsewhere")
             await other.type("stty size; echo do'ne'\r")
             await other.until("done\r\n")
             assert "20 90" in other.text
@@ -209,7 +209,7 @@ async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
             await reader.type("x=4''2\r")
             await reader.until("x=4")
         async with page(world.viewer) as client:
-            await state(client, shown="nowhere")
+            await wait_for_state(client, shown="nowhere")
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
             await reader.type("echo <$x>\r".replace("<$x>", '"<$x>"'))

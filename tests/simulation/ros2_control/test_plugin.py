@@ -233,7 +233,7 @@ async def test_manager_is_removed_with_robot(file):
         await world.start("broadcaster", "wheels")
         server.delete("mbot")
         await world.advance(0.1)
-        assert graph.node_names() == ["/test_node", "/gazebo"]
+        assert graph.node_names() == ["/gazebo", "/test_node"]
 
 
 async def test_controllers_stay_active_when_model_is_replaced(file):
