@@ -119,9 +119,9 @@ def test_killed_fork_server_is_replaced(tmp_path):
         server._server._process.wait()
         assert program.wait(SECONDS) == -signal.SIGKILL  # its status is unknown without the server
         os.kill(program.pid, signal.SIGTERM)
-    again = server.start(["--version"], cwd=tmp_path, env=QUIET)
-    assert isinstance(again.process, forked.ForkedProcess)
-    assert ended(again)[1] == 0
+    second_run = server.start(["--version"], cwd=tmp_path, env=QUIET)
+    assert isinstance(second_run.process, forked.ForkedProcess)
+    assert ended(second_run)[1] == 0
     server.close()
 
 

@@ -38,8 +38,8 @@ def message(number: int, stamp_ns: int, data: bytes) -> bytes:
     return record(0x05, struct.pack("<HIQQ", number, 0, stamp_ns, stamp_ns) + data)
 
 
-OURS = schema(1, "std_msgs/msg/String", "ros2msg", b"string data") + channel(1, "/chatter", "cdr")
-OTHERS = (
+SUPPORTED_CHANNELS = schema(1, "std_msgs/msg/String", "ros2msg", b"string data") + channel(1, "/chatter", "cdr")
+UNSUPPORTED_CHANNELS = (
     schema(2, "thing", "jsonschema", b'{"type":"object"}')
     + channel(2, "/thing", "json")
     + schema(3, "foxglove.Pose", "protobuf", bytes(range(128, 250)))  # not text
@@ -90,7 +90,7 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
 @pytest.mark.parametrize("profile", ["", "ros2", "x"])
 @pytest.mark.parametrize("kind", ["indexed", "unindexed", "loose", "cut off"])
 def test_bag_reader_reads_ros2_topics_and_names_others(tmp_path: Path, kind: str, profile: str) -> None:
-    with BagReader(write(tmp_path / "x.mcap", OURS + OTHERS, kind, profile)) as bag:
+    with BagReader(write(tmp_path / "x.mcap", SUPPORTED_CHANNELS + UNSUPPORTED_CHANNELS, kind, profile)) as bag:
         assert [(topic.name, topic.type_name, topic.count) for topic in bag.topics] == [
             ("/chatter", "std_msgs/msg/String", 5)
         ]
@@ -106,7 +106,7 @@ def test_bag_reader_reads_ros2_topics_and_names_others(tmp_path: Path, kind: str
 
 
 def test_mcap_without_ros2_topics_is_reported_as_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = write(tmp_path / "x.mcap", OTHERS, "indexed")
+    path = write(tmp_path / "x.mcap", UNSUPPORTED_CHANNELS, "indexed")
     assert main(["bag", "info", str(path)]) == 1
     output = capsys.readouterr()
     assert output.out == ""

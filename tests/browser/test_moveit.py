@@ -50,13 +50,13 @@ def kitchen(*, wrist: float = 0.2):
     robot.attached_collision_objects = [
         attached(
             "hand",
-            collision_object("cup", cylinder, frame="hand", at=pose(z=0.25)),
+            collision_object("cup", cylinder, frame="hand", object_pose=pose(z=0.25)),
         )
     ]
     kitchen_scene = scene(
-        collision_object("table", primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), at=pose(x=1.6, z=0.4)),
-        collision_object("ball", primitive(SolidPrimitive.SPHERE, 0.2), at=pose(x=1.6, y=0.5, z=0.63)),
-        collision_object("cone", primitive(SolidPrimitive.CONE, 0.5, 0.2), at=pose(x=1.6, y=-0.5, z=0.68)),
+        collision_object("table", primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), object_pose=pose(x=1.6, z=0.4)),
+        collision_object("ball", primitive(SolidPrimitive.SPHERE, 0.2), object_pose=pose(x=1.6, y=0.5, z=0.63)),
+        collision_object("cone", primitive(SolidPrimitive.CONE, 0.5, 0.2), object_pose=pose(x=1.6, y=-0.5, z=0.68)),
         robot=robot,
     )
     octomap = kitchen_scene.world.octomap

@@ -14,8 +14,8 @@ from tests.panels.panels import RVIZ_PANELS, panels_of, window_state
 pytestmark = pytest.mark.browser
 
 GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid\n  Value: true"
-OURS = {"Links", "Diagnostics"}
-USUAL = ("Displays", "Views", "Tool Properties", "Selection", "Time")
+LINKWRIGHT_PANELS = {"Links", "Diagnostics"}
+DEFAULT_PANELS = ("Displays", "Views", "Tool Properties", "Selection", "Time")
 
 
 @pytest.fixture(autouse=True)
@@ -25,7 +25,7 @@ def _user_state(tmp_path, monkeypatch):
 
 def wait_for_panels(page, *names: str) -> None:
     """Wait until exactly these panels are open, beside the scene and the panels that RViz does not have."""
-    expected = sorted({*names, *OURS})
+    expected = sorted({*names, *LINKWRIGHT_PANELS})
     page.wait_for_function(
         """wanted => {
           const tabs = [...document.querySelectorAll('.panel-tab')].map(tab => tab.textContent.split(' (')[0].trim());
@@ -69,7 +69,7 @@ def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path)
     other_path.write_text("Panels:\n  - {Class: rviz_common/Time, Name: Time}\n" + configuration(GRID))
     viewer = live(configuration(GRID))
     page = open_page(viewer, wait=False)
-    wait_for_panels(page, *USUAL)  # the file does not list panels
+    wait_for_panels(page, *DEFAULT_PANELS)  # the file does not list panels
     open_file(page, path)
     wait_for_panels(page, "Displays", "Views")
     open_file(page, other_path)
@@ -89,7 +89,7 @@ def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
     viewer = live(configuration(GRID))
     page = open_page(viewer, wait=False)
-    wait_for_panels(page, *USUAL)
+    wait_for_panels(page, *DEFAULT_PANELS)
     open_file(page, path)
     wait_for_panels(page, "Displays", "Views")
     neighbor = open_page(viewer, wait=False)

@@ -24,12 +24,12 @@ def test_shown_output_is_current(page: Path) -> None:
 def test_both_languages_show_same_cases() -> None:
     english, chinese = map(blocks, TOOL.PAGES)
     assert [block.language for block in english].count("text") >= 6
-    for ours, theirs in zip(english, chinese, strict=True):
-        if ours.language == "text":
-            assert language_independent(theirs.text) == language_independent(ours.text)
-            assert theirs.text.startswith("错误[")
+    for english_block, chinese_block in zip(english, chinese, strict=True):
+        if english_block.language == "text":
+            assert language_independent(chinese_block.text) == language_independent(english_block.text)
+            assert chinese_block.text.startswith("错误[")
         else:
-            assert theirs == ours
+            assert chinese_block == english_block
 
 
 def language_independent(output: str) -> list[str]:

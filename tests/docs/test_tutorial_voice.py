@@ -30,7 +30,7 @@ STRING = get_message("std_msgs/msg/String")
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_shown_utterances_are_understood(language: str) -> None:
     page = LANGUAGES[language].read_text(encoding="utf-8")
-    ours = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
+    robot_commands = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
     table = [cell for row in re.findall(r"^\| (`.+?) \| (.+?) \|$", page, re.MULTILINE) for cell in row]
     utterances = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
     utterances += [
@@ -55,7 +55,7 @@ def test_shown_utterances_are_understood(language: str) -> None:
         "前进",
     ]
     assert len(utterances) > 22
-    assert [text for text in utterances if ours.match_command(text) is None] == []
+    assert [text for text in utterances if robot_commands.match_command(text) is None] == []
 
 
 def test_launch_file_has_arguments_of_page(capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,12 +25,12 @@ TEXT = _bytes("stl_ascii")
     ids=["binary", "text", "text of Windows", "text with a name"],
 )
 def test_stl_triangles_match_trimesh(data):
-    (ours,) = placed_meshes(data, "stl")
-    assert isinstance(ours.mesh, PlainMesh)
+    (actual,) = placed_meshes(data, "stl")
+    assert isinstance(actual.mesh, PlainMesh)
     scene = trimesh.load_scene(trimesh.util.wrap_as_stream(data), file_type="stl", process=False)
-    ((name, theirs),) = scene.geometry.items()
-    assert np.array_equal(ours.mesh.vertices[ours.faces], theirs.vertices[theirs.faces])
-    assert not ours.mesh.name or ours.names == {name}
+    ((name, expected),) = scene.geometry.items()
+    assert np.array_equal(actual.mesh.vertices[actual.faces], expected.vertices[expected.faces])
+    assert not actual.mesh.name or actual.names == {name}
 
 
 @pytest.mark.parametrize(

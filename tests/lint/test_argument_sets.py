@@ -229,12 +229,16 @@ DeclareLaunchArgument('type', default_value='six', choices=['six', 'seven'])
 path = PathJoinSubstitution([FindPackageShare('arm'), 'urdf', [LaunchConfiguration('robot'), '.urdf.xacro']])
 Command(['xacro ', path, ' name:=a', ' type:=', LaunchConfiguration('type')])
 """
-    both = {
+    files_with_both_values = {
         f"arm/urdf/{name}.urdf.xacro": ARM.replace("$(arg type)", f"{name}_$(arg type)") for name in ("large", "small")
     }
     parts = ["large_six", "large_seven", "small_six", "small_seven"]
     parts.remove(f"{chosen}_seven")
-    files = {**both, "arm/launch/view.launch.py": launch, **{f"arm/urdf/{name}.xacro": PART for name in parts}}
+    files = {
+        **files_with_both_values,
+        "arm/launch/view.launch.py": launch,
+        **{f"arm/urdf/{name}.xacro": PART for name in parts},
+    }
     assert [finding["code"] for finding in check(files) if finding["severity"] != "info"] == codes_found
 
 

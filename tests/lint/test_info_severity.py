@@ -32,8 +32,8 @@ def severity_of(tmp_path):
     def check(code, inside):
         (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{inside}</robot>')
         findings = examine(tmp_path / "r.urdf", settings=Settings(select=(code,))).diagnostics
-        (only,) = [finding for finding in findings if finding.code == code]
-        return only.severity.name
+        (only_finding,) = [finding for finding in findings if finding.code == code]
+        return only_finding.severity.name
 
     return check
 

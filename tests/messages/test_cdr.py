@@ -34,8 +34,8 @@ ALL = sorted(interface_names("msg"))
 def test_serialized_bytes_match_rosbags(name):
     for seed in range(6):
         message = random_message(get_message(name), seed)
-        ours = serialize(message)
-        assert ours == bytes(rosbags_store().serialize_cdr(rosbags_object(message), name))
+        serialized = serialize(message)
+        assert serialized == bytes(rosbags_store().serialize_cdr(rosbags_object(message), name))
         big_endian = bytes(rosbags_store().serialize_cdr(rosbags_object(message), name, little_endian=False))
         assert deserialize(big_endian, type(message)) == message
 

@@ -473,8 +473,8 @@ async def test_qos_overrides_are_applied(harness):
     (info,) = publisher.node.get_publishers_info_by_topic("/tf")
     assert info.qos_profile.depth == 7
     infos = publisher.node.get_subscriptions_info_by_topic("/joint_states")
-    mine = next(info for info in infos if info.node_name == "robot_state_publisher")
-    assert mine.qos_profile.reliability is ReliabilityPolicy.RELIABLE
+    own_info = next(info for info in infos if info.node_name == "robot_state_publisher")
+    assert own_info.qos_profile.reliability is ReliabilityPolicy.RELIABLE
     names = [name for name in publisher.node.parameter_names() if name.startswith("qos_overrides")]
     assert sorted(names) == [
         *(f"qos_overrides./joint_states.subscription.{policy}" for policy in ("depth", "history", "reliability")),

@@ -40,8 +40,8 @@ class Connection(Transport):
 
 def accepted(listener: socket.socket) -> tuple[socket.socket, Connection]:
     listener.settimeout(SECONDS)
-    ours, _ = listener.accept()
-    return ours, Connection(ours.getpeername(), ours.getsockname())
+    accepted_socket, _ = listener.accept()
+    return accepted_socket, Connection(accepted_socket.getpeername(), accepted_socket.getsockname())
 
 
 def listen(host: str) -> socket.socket:
@@ -62,8 +62,8 @@ def connected(
     family = socket.AF_INET6 if ":" in connecting else socket.AF_INET
     with listen(listening) as listener, socket.socket(family) as theirs:
         theirs.connect((connecting, listener.getsockname()[1]))
-        ours, connection = accepted(listener)
-        with ours:
+        accepted_socket, connection = accepted(listener)
+        with accepted_socket:
             yield theirs, connection
 
 
@@ -91,8 +91,8 @@ def test_user_of_other_process_is_recognized(user: int, is_accepted: bool) -> No
     with listen("127.0.0.1") as listener:
         program = CONNECT.format(user=user, port=listener.getsockname()[1])
         with subprocess.Popen([sys.executable, "-I", "-c", program], stdin=subprocess.PIPE) as process:
-            ours, connection = accepted(listener)
-            with ours:
+            accepted_socket, connection = accepted(listener)
+            with accepted_socket:
                 assert may_be_own_user(connection) is is_accepted
                 process.communicate()
                 assert not may_be_own_user(connection), "a closed socket has no owner, and is listed as root's"

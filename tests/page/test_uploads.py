@@ -174,8 +174,8 @@ async def test_invalid_or_oversized_recording_is_rejected_before_upload(
     scratch: Path, name: str, files: dict[str, int], status: int
 ):
     async with upload_server() as (_, sender):
-        given, response = await sender.announce(name, files)
-        assert given == status, response
+        received_status, response = await sender.announce(name, files)
+        assert received_status == status, response
         assert status == 400 or response["problem"]
         assert not list_uploads(scratch)
 

@@ -129,8 +129,8 @@ def test_new_executable_under_a_condition_is_shown_with_it(repository, compare):
     repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT})
     install = "install(TARGETS tuner DESTINATION lib/arm)"
     target = "add_executable(tuner src/tuner.cpp)"
-    more = f"{target}\nif(WITH_TUNER AND UNIX)\n  {install}\nelse()\n  message(FATAL_ERROR no)\nendif()\n"
-    repository.write({"a/CMakeLists.txt": AMENT.replace("ament_package", more + "ament_package")})
+    with_condition = f"{target}\nif(WITH_TUNER AND UNIX)\n  {install}\nelse()\n  message(FATAL_ERROR no)\nendif()\n"
+    repository.write({"a/CMakeLists.txt": AMENT.replace("ament_package", with_condition + "ament_package")})
     (found,) = compare(repository).subjects
     assert sentences(found) == [
         "installed executables added: 'tuner (if WITH_TUNER AND UNIX)'",

@@ -154,10 +154,10 @@ def test_finding_that_moves_to_another_file_is_neither_new_nor_fixed(package, co
 
 
 def test_checks_that_stop_at_different_errors_find_nothing_new_in_unchanged_files(package, compare):
-    bare = MACRO.replace("</robot>", '<property name="length" value="1"/></robot>')
+    macro_with_property = MACRO.replace("</robot>", '<property name="length" value="1"/></robot>')
     broken = ARM.replace("<xacro:include", 30 * '<link name="${lost_name}"/>' + "<xacro:include", 1)
     missing_include = '<xacro:include filename="$(find lost_description)/lost.xacro"/>'
-    package.commit({PATH: broken, SEGMENT: bare})
+    package.commit({PATH: broken, SEGMENT: macro_with_property})
     package.commit({PATH: ARM.replace("<xacro:include", f"{missing_include}<xacro:include", 1)})
     assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["PKG101"]
 

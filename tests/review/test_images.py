@@ -47,8 +47,8 @@ def orange(image: bytes) -> int:
 
 def share_of_differing_pixels(first: bytes, second: bytes) -> float:
     pil = pytest.importorskip("PIL.Image")
-    pixels, others = (np.asarray(pil.open(io.BytesIO(image)).convert("RGB")) for image in (first, second))
-    return float((pixels != others).any(axis=-1).mean())
+    pixels, other_pixels = (np.asarray(pil.open(io.BytesIO(image)).convert("RGB")) for image in (first, second))
+    return float((pixels != other_pixels).any(axis=-1).mean())
 
 
 def test_moved_link_is_outlined_in_both_versions(images_of):
@@ -77,15 +77,15 @@ def test_added_link_is_outlined_only_in_new_version(images_of):
 
 
 def test_new_root_link_has_no_images(images_of):
-    lifted = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
-    <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
-    assert images_of({PATH: ARM.replace('<link name="base_link"/>', lifted)})[1] == []
+    new_root = """<link name="foot"/><joint name="foot_joint" type="fixed">
+    <parent link="foot"/><child link="base_link"/><origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
+    assert images_of({PATH: ARM.replace('<link name="base_link"/>', new_root)})[1] == []
 
 
 @pytest.mark.parametrize("is_added", [True, False])
 def test_robots_with_other_root_links_are_in_the_same_place(images_of, package, is_added):
-    foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
-    <origin xyz="0.2 0 0.3" rpy="0 0 0.5"/></joint><link name="base_link"/>"""
+    foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/>
+    <child link="base_link"/><origin xyz="0.2 0 0.3" rpy="0 0 0.5"/></joint><link name="base_link"/>"""
     with_foot = ARM.replace('<link name="base_link"/>', foot)
     package.commit({PATH: ARM if is_added else with_foot})
     ball = """<link name="ball"><visual><geometry><sphere radius="0.01"/></geometry></visual></link>

@@ -34,8 +34,8 @@ def test_same_path_sampled_at_other_times_does_not_differ():
 
 
 def test_paths_without_a_common_time_have_a_distance():
-    late = line(1.0, y=2.0) + np.array([10.0, 0.0, 0.0])
-    assert compare_paths("0", line(1.0), late).distance == pytest.approx(math.hypot(4.0, 2.0))
+    later_path = line(1.0, y=2.0) + np.array([10.0, 0.0, 0.0])
+    assert compare_paths("0", line(1.0), later_path).distance == pytest.approx(math.hypot(4.0, 2.0))
 
 
 def test_largest_differences_come_first():
@@ -65,8 +65,8 @@ def test_plot_has_the_same_scale_on_both_axes_and_each_path():
 
 
 def test_plot_of_a_robot_that_stood_still_has_a_frame():
-    still = line(0.0)
-    plot = path_plot(comparison((still, still + np.array([0.0, 0.0, 0.001]))))
+    standing_path = line(0.0)
+    plot = path_plot(comparison((standing_path, standing_path + np.array([0.0, 0.0, 0.001]))))
     assert "nan" not in plot
     assert ">0.001 m<" in plot
 

@@ -147,8 +147,8 @@ def test_removed_part_has_no_line_in_new_version(changed, compare):
     result = compare(changed, "HEAD~1..HEAD")
     for subject, change in result.breaking_changes:
         if change.location is not None and change.location.is_old:
-            lone = replace(result, subjects=[replace(subject, changes=[change])], new_findings=[])
-            assert as_diagnostics(lone)[0].span is None
+            comparison = replace(result, subjects=[replace(subject, changes=[change])], new_findings=[])
+            assert as_diagnostics(comparison)[0].span is None
 
 
 # --- the command ----------------------------------------------------------------------------------------------------

@@ -41,9 +41,9 @@ def images_of(repository):
     return run
 
 
-@pytest.mark.parametrize("far", [3, 100])
-def test_moved_model_of_a_world_is_shown(images_of, far):
-    old, new = (world(FIXED, BOX.format(name="moved", x=x)) for x in (far, far + 1))
+@pytest.mark.parametrize("new_pose", [3, 100])
+def test_moved_model_of_a_world_is_shown(images_of, new_pose):
+    old, new = (world(FIXED, BOX.format(name="moved", x=x)) for x in (new_pose, new_pose + 1))
     images = images_of("w/worlds/w.sdf", old, new)
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
     assert images[0].old != images[0].new

@@ -88,9 +88,9 @@ def test_page_without_scenes_has_no_program(boxed):
 
 @needs_page
 def test_files_from_elsewhere_are_in_no_scene(boxed, tmp_path):
-    secret = tmp_path / "secret.stl"
-    secret.write_bytes(stl(7.0))
-    boxed.commit({PATH: URDF.format(uri=secret.as_uri())})
+    outside_file = tmp_path / "secret.stl"
+    outside_file.write_bytes(stl(7.0))
+    boxed.commit({PATH: URDF.format(uri=outside_file.as_uri())})
     scene = scene_of(reviewed(boxed, "HEAD~1..HEAD"))
     assert scene.data == b""
     assert "it would contain files outside the repository" in str(scene.reason)

@@ -55,9 +55,9 @@ class House(SteppedSimulation):
         self.advance_and_watch(3.0)
         return self
 
-    def _options(self, name: str, costmap: str = "", **more: Any) -> NodeOptions:
-        given = flat(self._told[name]["ros__parameters"])
-        options = NodeOptions(parameters={**given, "autostart_node": True, **more})
+    def _options(self, name: str, costmap: str = "", **parameters: Any) -> NodeOptions:
+        file_parameters = flat(self._told[name]["ros__parameters"])
+        options = NodeOptions(parameters={**file_parameters, "autostart_node": True, **parameters})
         if costmap:
             for key, value in flat(self._told[costmap][costmap]["ros__parameters"]).items():
                 options.parameters_of_others.set(f"/{costmap}/{costmap}", key, value)

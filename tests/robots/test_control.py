@@ -97,9 +97,9 @@ def test_follow_wall_goes_through_maze(load: Any) -> None:
             beside.append(scans.last.ranges[90])  # 90 degrees to the right
         assert way > 8.0
         assert min(nearest) > RADIUS + 0.1, "mbot touches nothing"
-        near = [distance for distance in beside if distance < 0.9]
-        assert len(near) > 40, "there is a wall on the right most of the time"
-        assert sorted(near)[len(near) // 2] == pytest.approx(0.5, abs=0.1)
+        near_distances = [distance for distance in beside if distance < 0.9]
+        assert len(near_distances) > 40, "there is a wall on the right most of the time"
+        assert sorted(near_distances)[len(near_distances) // 2] == pytest.approx(0.5, abs=0.1)
         assert math.dist(place(test), (0.0, 0.0)) > 4.0, "mbot gets through the maze"
 
 
@@ -176,8 +176,8 @@ def test_avoid_obstacles_stops_before_box(load: Any) -> None:
         scans, odometry = test.record("/scan"), test.record("/odom")
         test.advance(20.0)
         assert place(test)[0] > 2.0, "mbot drives toward the boxes, which are 3.6 m away"
-        ahead = min(distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) <= 40)
-        assert 0.35 < ahead < 0.6
+        distance_ahead = min(distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) <= 40)
+        assert 0.35 < distance_ahead < 0.6
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3
 
 

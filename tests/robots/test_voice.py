@@ -26,13 +26,13 @@ STRING = get_message("std_msgs/msg/String")
 
 
 def test_commands_are_built_in_commands_with_rooms():
-    built_in, ours = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
-    assert ours.commands == built_in.commands
-    assert set(ours.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
-    match = ours.match_command("go to the kitchen")
+    built_in, robot_commands = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
+    assert robot_commands.commands == built_in.commands
+    assert set(robot_commands.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
+    match = robot_commands.match_command("go to the kitchen")
     assert match is not None
     assert match.values == {"place": "kitchen"}
-    assert "去厨房" in ours.phrases("zh")
+    assert "去厨房" in robot_commands.phrases("zh")
 
 
 @pytest.mark.parametrize("name", ["audio_capture", "voice_commander"])
@@ -52,8 +52,8 @@ def test_launch_file_declares_arguments(capsys):
 async def test_spoken_commands_drive_robot_through_playground():
     pytest.importorskip("mujoco")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
-        given = {"engine": "", "commands_file": str(COMMANDS), "use_sim_time": True}
-        running = VoiceCommander(playground.graph, NodeOptions(parameters=given))
+        parameters = {"engine": "", "commands_file": str(COMMANDS), "use_sim_time": True}
+        running = VoiceCommander(playground.graph, NodeOptions(parameters=parameters))
         text = playground.node.create_publisher(STRING, "/voice/text_input", 10)
 
         async def tell(command, seconds):

@@ -29,9 +29,9 @@ print(json.dumps([option for spec in specs for option in spec.options]))
 
 def test_property_choices_match_chinese_value_names():
     run = subprocess.run([sys.executable, "-c", OFFERED], capture_output=True, text=True, check=True, timeout=120)
-    offered = set(json.loads(run.stdout))
+    choices = set(json.loads(run.stdout))
     text = (REPOSITORY / "frontend/src/strings/zh/values.ts").read_text(encoding="utf-8")
-    named = {quoted or plain for quoted, plain in re.findall(r'^  (?:"([^"]+)"|(\w+)): "', text, re.MULTILINE)}
-    assert len(offered) > 40
-    assert sorted(offered - SAME - named) == []
-    assert sorted(named - offered) == []
+    named = {quoted or unquoted for quoted, unquoted in re.findall(r'^  (?:"([^"]+)"|(\w+)): "', text, re.MULTILINE)}
+    assert len(choices) > 40
+    assert sorted(choices - SAME - named) == []
+    assert sorted(named - choices) == []

@@ -105,7 +105,10 @@ def test_axis_is_expressed_in_joint_frame():
 
 
 def test_long_chain_of_frames_is_resolved():
-    frames = [f'<frame name="f{at}"><pose relative_to="f{at - 1}">1 0 0 0 0 0</pose></frame>' for at in range(1, 5001)]
+    frames = [
+        f'<frame name="f{number}"><pose relative_to="f{number - 1}">1 0 0 0 0 0</pose></frame>'
+        for number in range(1, 5001)
+    ]
     chain = Frames(model("".join(reversed(frames)) + '<frame name="f0"/><link name="a"/>'))
     assert is_at(chain.pose("f5000"), 5000, 0, 0)
 

@@ -247,8 +247,8 @@ def test_invalid_gazebo_elements_are_reported_with_location():
 
 
 def test_deeply_nested_gazebo_element_is_omitted():
-    deep = "<model>" * 300 + "</model>" * 300
-    robot = examine(f'<robot name="r">{link("a")}<gazebo>{deep}</gazebo></robot>').robot
+    deeply_nested = "<model>" * 300 + "</model>" * 300
+    robot = examine(f'<robot name="r">{link("a")}<gazebo>{deeply_nested}</gazebo></robot>').robot
     conversion = model_from_robot(robot, lump_fixed_joints=False)
     assert [diagnostic.code for diagnostic in conversion.diagnostics] == ["SDF133"]
     assert conversion.model.models == ()

@@ -49,7 +49,9 @@ def test_model_is_found_in_packages(tmp_path):
     )
     addresses = ["model://in_assets", "model://in_more", "model://in_models", "model://two/any", "package://two/any"]
     addresses += ["two/any", "two/any/model.sdf", f"file://{tmp_path}/two/any/model.sdf"]
-    names = [f"<include><uri>{address}</uri><name>m{at}</name></include>" for at, address in enumerate(addresses)]
+    names = [
+        f"<include><uri>{address}</uri><name>m{number}</name></include>" for number, address in enumerate(addresses)
+    ]
     world_reading = examine_world_in(tmp_path, "".join(names))
     assert world_reading.diagnostics == ()
     assert len(models(world_reading)) == len(addresses)
@@ -374,9 +376,9 @@ def test_file_generated_from_template_is_info(tmp_path, ending):
 
 def test_missing_file_of_built_in_model_is_info(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
-    ours = finder.model("model://person_standing", tmp_path)
-    assert isinstance(ours, Path)
-    for folder, severity in ((tmp_path, "INFO"), (ours.parent, "WARNING")):
+    own_model = finder.model("model://person_standing", tmp_path)
+    assert isinstance(own_model, Path)
+    for folder, severity in ((tmp_path, "INFO"), (own_model.parent, "WARNING")):
         finding = finder.file("model://person_standing/meshes/no.dae", folder)
         assert isinstance(finding, Missing)
         assert finding.severity.name == severity
@@ -393,8 +395,11 @@ def test_file_uri_with_wrong_case_suggests_file(tmp_path):
 def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
     """If each of thirty models includes the next one twice, the world has a thousand million models."""
     monkeypatch.setattr("linkwright.sdf.includes._MAX_MODELS", 500)
-    twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
-    files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}
+    two_includes = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
+    files = {
+        f"m{number}/model.sdf": sdf(f'<model name="m{number}">{two_includes.format(number + 1)}</model>')
+        for number in range(30)
+    }
     write(tmp_path, {**files, "m30/model.sdf": BOX})
     world_reading = examine_world_in(
         tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path)

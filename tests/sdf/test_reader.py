@@ -30,13 +30,13 @@ from linkwright.xmltree import Comment, Element
 from tests.sdf.worlds import model, world
 
 
-def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementRule]:
+def rules(rule: ElementRule, visited: dict[int, ElementRule]) -> dict[int, ElementRule]:
     """Return a rule and all rules below it by ID, each once."""
-    if id(rule) not in seen:
-        seen[id(rule)] = rule
+    if id(rule) not in visited:
+        visited[id(rule)] = rule
         for child in rule.children:
-            rules(child, seen)
-    return seen
+            rules(child, visited)
+    return visited
 
 
 MADE = [rule for rule in rules(SDF, {}).values() if is_dataclass(rule.make)]
@@ -47,13 +47,13 @@ def test_empty_element_has_class_defaults(rule: ElementRule):
     """The table and the classes have the same defaults, which are SDF's."""
     element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
     element_object = reader_of(rule, NEWEST).read(element, element, SdfReport())
-    own = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
+    own_defaults = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
     if isinstance(rule.default, rule.make):
-        own = {name: getattr(rule.default, name) for name in own}
-    own.pop("element", None)
+        own_defaults = {name: getattr(rule.default, name) for name in own_defaults}
+    own_defaults.pop("element", None)
     written = {attribute.target for attribute in rule.attributes if attribute.required}
-    assert {name: getattr(element_object, name) for name in own if name not in written} == {
-        name: value for name, value in own.items() if name not in written
+    assert {name: getattr(element_object, name) for name in own_defaults if name not in written} == {
+        name: value for name, value in own_defaults.items() if name not in written
     }
 
 
@@ -61,9 +61,9 @@ def test_pose_accepts_radians_degrees_and_quaternion():
     assert model("<pose>1 2 3 0.1 0.2 0.3</pose>").pose == RawPose(Pose((1, 2, 3), (0.1, 0.2, 0.3)))
     turned = model('<pose degrees="true">0 0 0 90 0 -45</pose>').pose.pose
     assert turned.rpy == (radians(90), 0, radians(-45))
-    half = model('<pose rotation_format="quat_xyzw">0 0 1  0 0 2 0</pose>').pose.pose
-    assert half.quaternion == (0, 0, 1, 0)
-    assert isclose(abs(half.rpy[2]), pi)
+    half_turn = model('<pose rotation_format="quat_xyzw">0 0 1  0 0 2 0</pose>').pose.pose
+    assert half_turn.quaternion == (0, 0, 1, 0)
+    assert isclose(abs(half_turn.rpy[2]), pi)
 
 
 def test_pose_accepts_old_frame_attribute():
@@ -305,8 +305,8 @@ def test_plugins_keep_parameters():
 
 
 def test_equal_plugins_stay_separate():
-    same = '<plugin filename="libx.so" name="x"/>'
-    first, second = model(f'<link name="a"/>{same}{same}').plugins
+    plugin_text = '<plugin filename="libx.so" name="x"/>'
+    first, second = model(f'<link name="a"/>{plugin_text}{plugin_text}').plugins
     assert first.element is not second.element
 
 
@@ -363,18 +363,18 @@ def test_sdf_elements_without_effect_are_accepted():
 
 
 @given(st.text(alphabet="<>/=\"' sdfworlmk123.-", max_size=60), st.integers(0, 10**6))
-def test_random_worlds_are_read_without_exception(text, at):
+def test_random_worlds_are_read_without_exception(text, position):
     """A random text is inserted into a world.
 
     If the result is XML, it is read without an exception.
     """
-    whole = (
+    document_text = (
         '<sdf version="1.6"><world name="w"><model name="m"><pose>0 0 0 0 0 0</pose><link name="l"><visual name="v">'
         "<geometry><box><size>1 1 1</size></box></geometry></visual></link></model></world></sdf>"
     )
-    at %= len(whole)
+    position %= len(document_text)
     try:
-        document, _ = parse_as_gazebo(whole[:at] + text + whole[at:], "w.sdf")
+        document, _ = parse_as_gazebo(document_text[:position] + text + document_text[position:], "w.sdf")
     except LinkwrightError:
         return
     read(document)

@@ -67,8 +67,8 @@ def test_model_script_has_colors_and_texture(tmp_path):
     assert (material.ambient, material.diffuse) == ((0.1, 0.2, 0.3, 1), (0.4, 0.5, 0.6, 0.7))
     assert (material.specular, material.emissive) == ((1, 1, 1, 1), (1, 0, 0, 1))
     assert material.pbr.metal.albedo_map == "file://box/materials/textures/box.png"
-    alone = material_of(tmp_path, script("Box/Base", "file://box/materials/scripts/box.material"))
-    assert alone.pbr.metal.albedo_map == (tmp_path / "box/materials/textures/box.png").as_uri()
+    single_material = material_of(tmp_path, script("Box/Base", "file://box/materials/scripts/box.material"))
+    assert single_material.pbr.metal.albedo_map == (tmp_path / "box/materials/textures/box.png").as_uri()
 
 
 def test_script_is_read_up_to_errors():
@@ -93,8 +93,8 @@ def test_missing_texture_and_folder_as_script_are_ignored(tmp_path):
 
 
 def test_nested_models_get_script_colors(tmp_path):
-    inner = VISUAL.format(f"<material>{script('Gazebo/Red')}</material>")
-    (tmp_path / "m.sdf").write_text(f'<sdf version="1.9"><model name="o">{inner}</model></sdf>')
+    visual_text = VISUAL.format(f"<material>{script('Gazebo/Red')}</material>")
+    (tmp_path / "m.sdf").write_text(f'<sdf version="1.9"><model name="o">{visual_text}</model></sdf>')
     reading = examine_world(tmp_path / "m.sdf", environment={"HOME": "/nowhere"})
     assert reading.sdf is not None
     material = reading.sdf.models[0].models[0].links[0].visuals[0].material

@@ -29,19 +29,22 @@ def pose_at(walk: Walk, seconds: float) -> tuple[float, float]:
 
 
 def test_looping_walk_restarts_and_other_walk_stays_at_end():
-    looping, single = Walk(Script(trajectories=(STRAIGHT,))), Walk(Script(loop=False, trajectories=(STRAIGHT,)))
-    assert pose_at(looping, 1) == pose_at(single, 1) == pytest.approx((2, 0))
-    assert pose_at(looping, 2) == pose_at(single, 2) == pytest.approx((4, 0))
-    assert pose_at(looping, 3) == pytest.approx((2, 0))
-    assert pose_at(single, 3) == pytest.approx((4, 0))
+    looping_walk, single_walk = (
+        Walk(Script(trajectories=(STRAIGHT,))),
+        Walk(Script(loop=False, trajectories=(STRAIGHT,))),
+    )
+    assert pose_at(looping_walk, 1) == pose_at(single_walk, 1) == pytest.approx((2, 0))
+    assert pose_at(looping_walk, 2) == pose_at(single_walk, 2) == pytest.approx((4, 0))
+    assert pose_at(looping_walk, 3) == pytest.approx((2, 0))
+    assert pose_at(single_walk, 3) == pytest.approx((4, 0))
 
 
 def test_walk_waits_for_delay_and_auto_start():
     delayed = Walk(Script(delay_start=5, trajectories=(STRAIGHT,)))
     assert pose_at(delayed, 4) == (0, 0)
     assert pose_at(delayed, 6) == pytest.approx((2, 0))
-    never = Walk(Script(auto_start=False, trajectories=(STRAIGHT,)))
-    assert pose_at(never, 100) == (0, 0)
+    waiting_walk = Walk(Script(auto_start=False, trajectories=(STRAIGHT,)))
+    assert pose_at(waiting_walk, 100) == (0, 0)
 
 
 def test_trajectories_are_walked_in_sequence():

@@ -128,9 +128,11 @@ def test_world_from_written_models_equals_whole_world(inside, model):
     document, _ = parse_as_gazebo(f'<sdf version="1.9"><world name="w">{model}{inside}</world></sdf>', "m.world")
     sdf = read(document).sdf
     assert sdf is not None
-    [whole] = sdf.worlds
-    text = save_world(replace(whole, models=()), [save_model_of_world(model) for model in whole.models])
-    assert text == save(whole)
+    [expected_world] = sdf.worlds
+    text = save_world(
+        replace(expected_world, models=()), [save_model_of_world(model) for model in expected_world.models]
+    )
+    assert text == save(expected_world)
 
 
 def test_old_axis_is_written_in_model_frame():

@@ -72,10 +72,10 @@ def test_nested_shell_does_not_extend_path_twice(tmp_path: Path) -> None:
     for folder in (first, second):
         folder.mkdir()
         write_programs(folder)
-    outer = shell_environment(first, {"PATH": BARE})
-    inner = shell_environment(second, outer)
-    assert str(first) not in inner["PATH"].split(os.pathsep)
-    assert inner["PATH"].split(os.pathsep)[-1] == str(second)
+    outer_environment = shell_environment(first, {"PATH": BARE})
+    inner_environment = shell_environment(second, outer_environment)
+    assert str(first) not in inner_environment["PATH"].split(os.pathsep)
+    assert inner_environment["PATH"].split(os.pathsep)[-1] == str(second)
 
 
 def test_exit_status_is_that_of_command() -> None:

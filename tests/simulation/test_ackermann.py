@@ -16,14 +16,14 @@ RADIUS, BASE, TRACK = 0.1, 0.6, 0.4
 
 
 def _link(name: str, x: float, y: float, z: float, mass: float, shape: str = "", roll: float = 0.0) -> str:
-    moment = mass * 0.005
+    moment_of_inertia = mass * 0.005
     collision = (
         f'<collision name="collision"><geometry>{shape}</geometry><surface><friction><ode><mu>1</mu><mu2>1</mu2></ode>'
         "</friction></surface></collision>"
     )
     return (
         f'<link name="{name}"><pose>{x} {y} {z} {roll} 0 0</pose><inertial><mass>{mass}</mass>'
-        f"<inertia><ixx>{moment}</ixx><iyy>{moment}</iyy><izz>{moment}</izz></inertia></inertial>"
+        f"<inertia><ixx>{moment_of_inertia}</ixx><iyy>{moment_of_inertia}</iyy><izz>{moment_of_inertia}</izz></inertia></inertial>"
         f"{collision if shape else ''}</link>"
     )
 

@@ -12,15 +12,15 @@ from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND
 
 
-@pytest.mark.parametrize("strange", [nan, inf], ids=str)
+@pytest.mark.parametrize("invalid_value", [nan, inf], ids=str)
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
-async def test_drive_stops_at_nan_command_and_follows_next(model: str, strange: float) -> None:
+async def test_drive_stops_at_nan_command_and_follows_next(model: str, invalid_value: float) -> None:
     async with running_server(GROUND, model) as (server, graph, log):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
         driver.publish(forward(0.3))
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.3, abs=0.02)
-        driver.publish(forward(strange))
+        driver.publish(forward(invalid_value))
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
         assert warnings(log) == ["a command on 'cmd_vel' contains NaN or an infinite number: the motion stops"]

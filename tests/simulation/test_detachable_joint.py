@@ -77,8 +77,8 @@ async def test_initial_attach_and_topic_names_can_be_configured():
         "<initial_attach>false</initial_attach><attach_topic>/grab</attach_topic><detach_topic>/drop</detach_topic>"
         "<output_topic>/grip</output_topic>"
     )
-    apart = LOAD.replace("1.75", "1.5")
-    async with running_server(GROUND, carrier(extra), apart) as (server, graph, log):
+    detached_load = LOAD.replace("1.75", "1.5")
+    async with running_server(GROUND, carrier(extra), detached_load) as (server, graph, log):
         states = Recording(graph, server.node, "/grip")
         server.advance(SECOND // 5)
         height = server.simulation.link_pose("load::link")[2]

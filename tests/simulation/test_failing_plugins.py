@@ -176,7 +176,7 @@ OF_GZ = {kind: sensor(kind, CAMERA if kind.startswith(_PICTURES) else "", "a") f
 
 @pytest.mark.parametrize("text", (CLASSIC | OF_GZ).values(), ids=(CLASSIC | OF_GZ).keys())
 async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
-    chance = Random(7)
+    rng = Random(7)
     if 'type="force_torque"' in text:
         joint = '<joint name="wrist" type="continuous"><parent>head</parent><child>arm</child>{}</joint>'
         robot = robot_with(extra=f'<link name="arm"/>{joint.format(text)}').replace("<static>true</static>", "")
@@ -184,7 +184,7 @@ async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
         robot = robot_with(text)
     async with running_server(block("wall", "2.5 0 0 0 0 0", "1 20 20"), robot) as (server, _, log):
         assert len(server.plugins("robot")) == 1
-        monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: chance.randrange(2))
+        monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: rng.randrange(2))
         server.advance(4 * SECOND)
         assert len(server.plugins("robot")) == 1
         assert not [record.text for record in log if record.level >= LogLevel.ERROR]

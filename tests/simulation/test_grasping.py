@@ -71,9 +71,9 @@ async def test_gripped_object_stays_until_fingers_open():
 
 
 async def test_object_slips_without_plugin_or_with_force_from_one_side():
-    without = hand().replace('filename="libgazebo_grasp_fix.so"', 'filename="gz-sim-label-system"')
+    hand_without_plugin = hand().replace('filename="libgazebo_grasp_fix.so"', 'filename="gz-sim-label-system"')
     one_sided = hand().replace("<gripper_link>right</gripper_link>", "")
-    for text in (without, one_sided):
+    for text in (hand_without_plugin, one_sided):
         async with running_server(text, EGG, gravity="0 0 -0.02") as (server, graph, _):
             await squeeze(graph, 5.0)
             server.advance(SECOND)
@@ -133,8 +133,8 @@ LEAF = box("leaf", "0 0 0.97 0 0 0", "0.02 0.02 0.02", 0.01)
 
 
 async def test_switched_on_gripper_attracts_close_links():
-    far = box("far", "0 0.5 1 0 0 0", "0.02 0.02 0.02", 0.01)
-    async with running_server(cup(), LEAF, far, gravity="0 0 0") as (server, graph, log):
+    far_box = box("far", "0 0.5 1 0 0 0", "0.02 0.02 0.02", 0.01)
+    async with running_server(cup(), LEAF, far_box, gravity="0 0 0") as (server, graph, log):
         recording = Recording(graph, server.node, "/grasping")
         server.advance(SECOND // 1000)
         await graph.settle()

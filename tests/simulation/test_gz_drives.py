@@ -97,8 +97,8 @@ async def test_car_respects_steering_limit_backward():
 
 
 async def test_steering_only_follows_angle():
-    only = steering("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
-    async with running_server(GROUND, car(only)) as (server, graph, log):
+    steering_only = steering("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
+    async with running_server(GROUND, car(steering_only)) as (server, graph, log):
         node = graph.create_node("driver")
         publisher = node.create_publisher("std_msgs/msg/Float64", "/model/car/steer_angle", 10)
         publisher.publish(get_message("std_msgs/msg/Float64")(data=0.4))

@@ -86,8 +86,12 @@ def test_collisions_and_joints_with_duplicate_names_are_kept():
     joints = "".join(
         f'<joint name="j" type="revolute"><parent>a</parent><child>{child}</child><axis/></joint>' for child in "bd"
     )
-    twice = f'<link name="e"><collision name="c">{BOX}</collision><collision name="c">{BOX}</collision></link>'
-    simulation = start_simulation(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{twice}{joints}</model>')
+    link_with_duplicates = (
+        f'<link name="e"><collision name="c">{BOX}</collision><collision name="c">{BOX}</collision></link>'
+    )
+    simulation = start_simulation(
+        f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{link_with_duplicates}{joints}</model>'
+    )
     assert simulation.model.body("m::e").geomnum == 2
     assert sorted(simulation.scene.joints) == ["m::j", "m::j~"]
 

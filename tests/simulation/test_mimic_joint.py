@@ -24,19 +24,21 @@ DISABLING = ("libroboticsgroup_gazebo_disable_link_plugin.so", "libroboticsgroup
 GAINS = "{node}: {{ros__parameters: {{pid_gains: {{{joint}: {{p: 40.0, d: 1.0}}}}}}}}\n"
 
 
-def finger(name: str, inner: str = "", effort: float = 5.0) -> str:
+def finger(name: str, plugin_text: str = "", effort: float = 5.0) -> str:
     """Return a finger whose joint turns about the vertical axis, so that gravity does not move it."""
     return f"""
   <link name="{name}"><inertial><origin xyz="0.1 0 0"/><mass value="0.1"/>
     <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <joint name="{name}_joint" type="revolute"><parent link="world"/><child link="{name}"/><axis xyz="0 0 1"/>
-    <limit lower="-2" upper="2" effort="{effort}" velocity="10"/>{inner}</joint>"""
+    <limit lower="-2" upper="2" effort="{effort}" velocity="10"/>{plugin_text}</joint>"""
 
 
-def gripper(plugin: str, library: str = LIBRARIES[0], mimic: str = "", others: str = "", effort: float = 5.0) -> str:
+def gripper(
+    plugin: str, library: str = LIBRARIES[0], mimic: str = "", other_joints: str = "", effort: float = 5.0
+) -> str:
     return f"""<robot name="gripper"><link name="world"/>{finger("left")}{finger("right", mimic, effort)}
   <gazebo><plugin name="follow" filename="{library}"><joint>left_joint</joint><mimicJoint>right_joint</mimicJoint>
-    {plugin}</plugin></gazebo>{others}</robot>"""
+    {plugin}</plugin></gazebo>{other_joints}</robot>"""
 
 
 class Gripper:
@@ -96,16 +98,18 @@ async def test_sensitiveness_applies_to_pid_controllers(tmp_path):
 
 async def test_pid_controller_pushes_the_joint(tmp_path):
     async with running(gripper(f"<hasPID/>{gains(tmp_path)}")) as robot:
-        early = robot.close(0.5, 0.05)
-        assert 0.0 < early < 0.45
+        early_force = robot.close(0.5, 0.05)
+        assert 0.0 < early_force < 0.45
         assert robot.close(0.5, 2.0) == pytest.approx(0.5, abs=0.05)
         assert robot.warnings == []
 
 
-@pytest.mark.parametrize(("given", "effort", "force"), [("<maxEffort>0.5</maxEffort>", 5.0, 0.5), ("", 1.5, 1.5)])
-async def test_max_effort_limits_the_force_of_the_pid_controller(tmp_path, given, effort, force):
+@pytest.mark.parametrize(
+    ("plugin_parameters", "effort", "force"), [("<maxEffort>0.5</maxEffort>", 5.0, 0.5), ("", 1.5, 1.5)]
+)
+async def test_max_effort_limits_the_force_of_the_pid_controller(tmp_path, plugin_parameters, effort, force):
     async with running(
-        gripper(f"<hasPID/><multiplier>10</multiplier>{given}{gains(tmp_path)}", effort=effort)
+        gripper(f"<hasPID/><multiplier>10</multiplier>{plugin_parameters}{gains(tmp_path)}", effort=effort)
     ) as robot:
         assert robot.close(1.5, 1.0) == pytest.approx(2.0, abs=0.02)  # the limit of the joint, far from its target
         assert robot.server.simulation.data.joint("gripper::right_joint").qfrc_applied[0] == pytest.approx(force)
@@ -141,7 +145,7 @@ async def test_gains_are_shared_with_gazebo_ros_control(tmp_path):
         '<gazebo><plugin name="gazebo_ros_control" filename="libgazebo_ros_control.so">'
         f"{gains(tmp_path)}</plugin></gazebo>"
     )
-    async with running(gripper("<hasPID/>", others=control)) as robot:
+    async with running(gripper("<hasPID/>", other_joints=control)) as robot:
         assert 0.0 < robot.close(0.5, 0.05) < 0.45
 
 
@@ -151,7 +155,7 @@ async def test_transmission_does_not_hold_a_joint_that_follows():
         "<hardwareInterface>PositionJointInterface</hardwareInterface></joint></transmission>"
     )
     control = '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
-    text = gripper("", others=transmission + control)
+    text = gripper("", other_joints=transmission + control)
     async with running(text) as robot:
         await ControlledRobot(robot.server, robot.server.node.graph).describe(text)
         assert robot.server.plugins("gripper")[1]._systems
@@ -195,8 +199,8 @@ async def test_joint_does_not_jump_when_world_restarts():
 
 
 async def test_world_restart_restarts_the_pid_controller():
-    given = "<hasPID><p>1</p><i>1</i><i_clamp>5</i_clamp></hasPID>"
-    async with running(gripper(given)) as robot:
+    plugin_parameters = "<hasPID><p>1</p><i>1</i><i_clamp>5</i_clamp></hasPID>"
+    async with running(gripper(plugin_parameters)) as robot:
         robot.close(0.5)
         (plugin,) = robot.server.plugins("gripper")
         assert plugin._pid.integral != 0.0
@@ -225,7 +229,7 @@ async def test_disabled_link_floats_until_something_touches_it(library):
 
 async def test_link_with_joints_is_not_disabled():
     plugin = f'<gazebo><plugin name="disable" filename="{DISABLING[0]}"><link>left</link></plugin></gazebo>'
-    async with running(gripper("", others=plugin)) as robot:
+    async with running(gripper("", other_joints=plugin)) as robot:
         assert robot.close(0.4) == pytest.approx(0.4, abs=0.01)
         (warning,) = robot.warnings
         assert warning.startswith("link 'left' is not disabled")

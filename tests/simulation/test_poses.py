@@ -66,14 +66,16 @@ async def test_static_poses_have_separate_topic():
 
 
 async def test_nested_model_poses_are_published():
-    inner = box("inner", "0 0 0.5 0 0 0", "0.2 0.2 0.2")
+    inner_model = box("inner", "0 0 0.5 0 0 0", "0.2 0.2 0.2")
     joint = '<joint name="j" type="fixed"><parent>link</parent><child>inner::link</child></joint>'
     settings = (
         "<publish_nested_model_pose>true</publish_nested_model_pose><publish_model_pose>false</publish_model_pose>"
         "<use_pose_vector_msg>true</use_pose_vector_msg>"
     )
-    outer = box("outer", "1 0 3 0 0 0", "0.2 0.2 0.2").replace("</model>", f"{inner}{joint}{poses(settings)}</model>")
-    async with running_server(outer) as (server, graph, log):
+    outer_model = box("outer", "1 0 3 0 0 0", "0.2 0.2 0.2").replace(
+        "</model>", f"{inner_model}{joint}{poses(settings)}</model>"
+    )
+    async with running_server(outer_model) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/outer/pose")
         server.advance(SECOND // 100)
         await graph.settle()

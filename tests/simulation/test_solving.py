@@ -48,11 +48,11 @@ def test_joint_solving_of_many_robots_gives_same_motion(monkeypatch):
     together.advance(NANOSECONDS_PER_SECOND)
     with monkeypatch.context() as patch:
         patch.setattr(Solving, "_update_solver", lambda _: None)
-        alone = driving_robots()
-        alone.advance(5 * CHECK_PERIOD + NANOSECONDS_PER_SECOND)
-        assert not is_solved_jointly(alone)
+        reference = driving_robots()
+        reference.advance(5 * CHECK_PERIOD + NANOSECONDS_PER_SECOND)
+        assert not is_solved_jointly(reference)
     assert together.model_pose("mbot8")[0] > 0.3
-    np.testing.assert_allclose(together.data.qpos, alone.data.qpos, atol=1e-7)
+    np.testing.assert_allclose(together.data.qpos, reference.data.qpos, atol=1e-7)
 
 
 def test_few_robots_are_solved_separately():
@@ -85,23 +85,23 @@ def test_sleeping_box_wakes_when_hit_during_joint_solving():
     assert is_solved_jointly(simulation)
     assert simulation.link_pose("wall::link")[0] == pytest.approx(1.2, abs=1e-4)
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
-    ahead = simulation.link_pose("wall::link")[0]
-    assert ahead > simulation.model_pose("mbot8")[0] > 1.2
+    wall_position = simulation.link_pose("wall::link")[0]
+    assert wall_position > simulation.model_pose("mbot8")[0] > 1.2
     simulation.advance(NANOSECONDS_PER_SECOND)
-    assert simulation.link_pose("wall::link")[0] > ahead + 0.1
+    assert simulation.link_pose("wall::link")[0] > wall_position + 0.1
 
 
 def test_reset_is_bitwise_reproducible():
     simulation = driving_robots()
     simulation.advance(NANOSECONDS_PER_SECOND // 2)
-    once = simulation.data.qpos.tobytes()
+    first_positions = simulation.data.qpos.tobytes()
     simulation.reset()
     assert not is_solved_jointly(simulation)
     for number in range(ROBOTS):
         assert simulation.model_pose(f"mbot{number}")[0] == pytest.approx(0.0)
     simulation.data.ctrl[:] = np.repeat(1.0 + np.arange(ROBOTS), 2)
     simulation.advance(NANOSECONDS_PER_SECOND // 2)
-    assert simulation.data.qpos.tobytes() == once
+    assert simulation.data.qpos.tobytes() == first_positions
 
 
 def test_remaining_robots_are_solved_separately_after_delete():

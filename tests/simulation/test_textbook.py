@@ -108,9 +108,9 @@ def test_four_bar_linkage_stays_closed():
         for name, pose in (("crank", "0 0 1 0 0 0"), ("coupler", "0 0 1.3 0 0 0"), ("rocker", "0.5 0 1 0 0 0"))
     )
     joints = "".join(
-        f'<joint name="{name}" type="revolute"><pose relative_to="{at}">{pose}</pose><parent>{parent}</parent>'
+        f'<joint name="{name}" type="revolute"><pose relative_to="{anchor}">{pose}</pose><parent>{parent}</parent>'
         f"<child>{child}</child><axis><xyz>0 1 0</xyz></axis></joint>"
-        for name, at, pose, parent, child in (
+        for name, anchor, pose, parent, child in (
             ("a", "crank", "0 0 0 0 0 0", "world", "crank"),
             ("b", "crank", "0 0 0.3 0 0 0", "crank", "coupler"),
             ("d", "rocker", "0 0 0 0 0 0", "world", "rocker"),

@@ -82,13 +82,13 @@ def test_ball_and_universal_joints_keep_distance():
 
 def test_loop_joint_is_closed_or_reported():
     ends = [box(name, f"{x} 0 3 0 0 0") for name, x in (("a", 0), ("b", 2))]
-    middle = box("bridge", "1 0 3 0 0 0")
+    bridge = box("bridge", "1 0 3 0 0 0")
     anchors = [joint("fixed", "world", name, name=f"hold_{name}") for name in "ab"]
     loop = [joint("fixed", name, "bridge", name=f"on_{name}") for name in "ab"]
-    simulation = make_simulation(*ends, middle, *anchors, *loop)
+    simulation = make_simulation(*ends, bridge, *anchors, *loop)
     simulation.advance(500_000_000)
     assert simulation.model_pose("bridge")[:3] == pytest.approx((1, 0, 3), abs=1e-3)
-    simulation = make_simulation(*ends, middle, *anchors, loop[0], joint("prismatic", "b", "bridge", "<axis/>", "rail"))
+    simulation = make_simulation(*ends, bridge, *anchors, loop[0], joint("prismatic", "b", "bridge", "<axis/>", "rail"))
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in simulation.scene.diagnostics] == [
         ("SIM118", "joint 'rail' is left out: a joint of type prismatic cannot close a loop")
     ]

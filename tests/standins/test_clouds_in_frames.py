@@ -33,7 +33,9 @@ def test_transform_points_applies_transform(turned):
 
 
 def test_transformed_cloud_keeps_other_fields(turned):
-    fields = [PointField(name=name, offset=4 * at, datatype=7, count=1) for at, name in enumerate(["x", "y", "z", "i"])]
+    fields = [
+        PointField(name=name, offset=4 * index, datatype=7, count=1) for index, name in enumerate(["x", "y", "z", "i"])
+    ]
     cloud = point_cloud2.create_cloud(Header(frame_id="lidar"), fields, [(1.0, 0.0, 0.0, 7.0), (0.0, 0.0, 2.0, 8.0)])
     moved = do_transform_cloud(cloud, turned)
     assert moved.header.frame_id == "base"

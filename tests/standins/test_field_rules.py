@@ -28,8 +28,8 @@ def outcomes(python=sys.executable, command=(PROGRAM,), **variables):
     return json.loads(result.stdout)
 
 
-def refused(came):
-    return isinstance(came, str)
+def refused(outcome):
+    return isinstance(outcome, str)
 
 
 class TestHumble:
@@ -59,10 +59,10 @@ class TestHumble:
 
 @pytest.mark.parametrize("variables", [{}, {"ROS_DISTRO": "humble", ASSUMED: "1"}, {"ROS_DISTRO": "jazzy"}])
 def test_numpy_arrays_are_accepted_unless_ros_distro_is_set_to_humble(variables):
-    came = outcomes(**variables)
-    assert came["Image.data set of numpy of rows"] == ["array", list(range(12))]
-    assert came["JointState.position made of array of another type"] == ["array", [0.5]]
-    assert came["UnboundedSequences.bool_values set of numpy"] == ["list", [True, False]]
+    outcome = outcomes(**variables)
+    assert outcome["Image.data set of numpy of rows"] == ["array", list(range(12))]
+    assert outcome["JointState.position made of array of another type"] == ["array", [0.5]]
+    assert outcome["UnboundedSequences.bool_values set of numpy"] == ["list", [True, False]]
 
 
 def test_own_commands_accept_numpy_arrays(tmp_path):
@@ -84,6 +84,6 @@ def test_field_rules_match_real_message_classes():
     real = outcomes(python=PYTHON, ROS_PYTHON_CHECK_FIELDS="1")
     assert outcomes(ROS_DISTRO="jazzy", ROS_PYTHON_CHECK_FIELDS="1") == real
     humble = outcomes(ROS_DISTRO="humble")
-    assert {case: came for case, came in humble.items() if " set of " in case} == {
-        case: came for case, came in real.items() if " set of " in case
+    assert {case: outcome for case, outcome in humble.items() if " set of " in case} == {
+        case: outcome for case, outcome in real.items() if " set of " in case
     }

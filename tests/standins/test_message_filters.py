@@ -103,16 +103,16 @@ def test_three_topics_are_matched_within_slop():
 
 
 def test_messages_without_header_need_sync_arrival_time(node, capfd):
-    plain, other = SimpleFilter(), SimpleFilter()
+    first, other = SimpleFilter(), SimpleFilter()
     matches = []
-    ApproximateTimeSynchronizer([plain, other], 10, 0.1).registerCallback(lambda *messages: matches.append(messages))
-    plain.signalMessage(String(data="now"))
+    ApproximateTimeSynchronizer([first, other], 10, 0.1).registerCallback(lambda *messages: matches.append(messages))
+    first.signalMessage(String(data="now"))
     assert matches == []
     assert "[message_filters_approx]: can not use message filters messages without" in capfd.readouterr().err
-    ApproximateTimeSynchronizer([plain, other], 10, 60.0, True).registerCallback(
+    ApproximateTimeSynchronizer([first, other], 10, 60.0, True).registerCallback(
         lambda *messages: matches.append(messages)
     )
-    plain.signalMessage(String(data="now"))
+    first.signalMessage(String(data="now"))
     other.signalMessage(String(data="too"))
     assert matches == [(String(data="now"), String(data="too"))]
 

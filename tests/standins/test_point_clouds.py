@@ -64,9 +64,9 @@ def test_mixed_field_types_with_gaps_are_read():
     assert read.tolist() == [(1.5, 1, 2, 3, 0.25)]
     with pytest.raises(AssertionError, match="different types"):
         point_cloud2.read_points_numpy(cloud)
-    again = point_cloud2.create_cloud(Header(), fields, read)
-    assert again.data == cloud.data[:20]
-    assert not any(again.data[4:8]), "bytes without a field are zero"
+    round_trip = point_cloud2.create_cloud(Header(), fields, read)
+    assert round_trip.data == cloud.data[:20]
+    assert not any(round_trip.data[4:8]), "bytes without a field are zero"
 
 
 def test_padded_rows_and_big_endian_are_read():

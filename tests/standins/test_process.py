@@ -180,10 +180,12 @@ class TestProcessEffects:
                     pass
             print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
             """
-        plain = {"PATH": os.environ["PATH"]}
+        minimal_environment = {"PATH": os.environ["PATH"]}
         # Ubuntu has a sitecustomize of its own.
-        others = output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=plain) == "True"
-        assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
+        has_site_customization = (
+            output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=minimal_environment) == "True"
+        )
+        assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if has_site_customization else "[]")
 
     def test_similar_missing_module_is_not_found(self):
         ended = run("-c", "import rclpy_of_another_kind")
@@ -241,10 +243,10 @@ class TestProcessEffects:
         ]
 
     def test_environment_prepends_standin_path_once(self, tmp_path):
-        once = process.environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
-        assert once["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
-        assert once["OTHER"] == "kept"
-        assert process.environment(once) == once
+        process_environment = process.environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
+        assert process_environment["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
+        assert process_environment["OTHER"] == "kept"
+        assert process.environment(process_environment) == process_environment
         modules = {path.name for path in Path(process.standin_path()).glob("*.py")}
         assert modules == {"linkwright_pytest.py", "sitecustomize.py"}
 

@@ -88,8 +88,8 @@ class TestMessageSnapshots:
         def execute(goal_handle):
             feedback = Fibonacci.Feedback()
             feedback.sequence = [0, 1]
-            for at in range(1, 4):
-                feedback.sequence.append(feedback.sequence[at] + feedback.sequence[at - 1])
+            for length in range(1, 4):
+                feedback.sequence.append(feedback.sequence[length] + feedback.sequence[length - 1])
                 goal_handle.publish_feedback(feedback)
             goal_handle.succeed()
             return Fibonacci.Result(sequence=feedback.sequence)
@@ -182,15 +182,15 @@ class TestOwnParts:
         assert order == ["urgent", "slow"]
 
     def test_custom_callback_group_throttles_timer(self, node):
-        group, begun = ThrottledCallbackGroup(node), []
-        node.create_timer(0.001, lambda: begun.append(time.monotonic()), callback_group=group)
+        group, start_times = ThrottledCallbackGroup(node), []
+        node.create_timer(0.001, lambda: start_times.append(time.monotonic()), callback_group=group)
         end = rclpy.create_node("end").create_timer(0.28, lambda: None)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        while group.refills < 4 or len(begun) < 4:
+        while group.refills < 4 or len(start_times) < 4:
             executor.spin_once(timeout_sec=0.02)
         assert end.timer_period_ns == 280_000_000
-        assert len(begun) <= 2 * (group.refills + 1)
+        assert len(start_times) <= 2 * (group.refills + 1)
 
     def test_events_executor_completes_task(self, node):
         executor = EventsExecutor()
@@ -202,26 +202,30 @@ class TestOwnParts:
 
 class TestEvents:
     def test_matched_events_report_endpoint_counts(self, node):
-        seen = []
+        event_counts = []
         node.create_publisher(
             String,
             "topic",
             10,
-            event_callbacks=PublisherEventCallbacks(matched=lambda info: seen.append(("out", info.current_count))),
+            event_callbacks=PublisherEventCallbacks(
+                matched=lambda info: event_counts.append(("out", info.current_count))
+            ),
         )
         subscription = node.create_subscription(
             String,
             "topic",
             lambda _message: None,
             10,
-            event_callbacks=SubscriptionEventCallbacks(matched=lambda info: seen.append(("in", info.current_count))),
+            event_callbacks=SubscriptionEventCallbacks(
+                matched=lambda info: event_counts.append(("in", info.current_count))
+            ),
         )
         for _ in range(2):
             rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert sorted(seen) == [("in", 1), ("out", 1)]
+        assert sorted(event_counts) == [("in", 1), ("out", 1)]
         node.destroy_subscription(subscription)
         rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert seen[-1] == ("out", 0)
+        assert event_counts[-1] == ("out", 0)
 
 
 class TestAsyncio:

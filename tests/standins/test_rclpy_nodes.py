@@ -54,9 +54,9 @@ class Counter(Node):
 
 
 class Listener(Node):
-    def __init__(self, wanted):
+    def __init__(self, message_count):
         super().__init__("listener")
-        self.heard, self.wanted, self.finished = [], wanted, Future()
+        self.heard, self.wanted, self.finished = [], message_count, Future()
         self.subscription = self.create_subscription(String, "topic", self.listener_callback, 10)
 
     def listener_callback(self, msg):
@@ -109,18 +109,18 @@ class TestMinimal:
         node.destroy_node()
 
     def test_timer_callback_can_be_a_closure(self, node):
-        i, seen = 0, []
+        i, events = 0, []
 
         def timer_callback():
             nonlocal i
             i += 1
-            seen.append(i)
+            events.append(i)
             if i == 3:
                 rclpy.shutdown()
 
         node.create_timer(0.005, timer_callback)
         rclpy.spin(node)
-        assert seen == [1, 2, 3]
+        assert events == [1, 2, 3]
         assert not rclpy.ok()
 
     def test_service_returns_response_to_client(self, ros):
@@ -223,14 +223,14 @@ class TestMinimal:
         assert future.result().sum == 42
 
     def test_done_callbacks_run_in_executor(self, node):
-        seen = []
+        events = []
         node.create_service(AddTwoInts, "add", _sum)
         future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
-        future.add_done_callback(lambda future: seen.append(future.result().sum))
+        future.add_done_callback(lambda future: events.append(future.result().sum))
         end = time.monotonic() + SECONDS
-        while not seen and time.monotonic() < end:
+        while not events and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
-        assert seen == [2]
+        assert events == [2]
 
     def test_two_nodes_share_multithreaded_executor(self, ros):
         talker, listener = Counter(), Listener(3)
@@ -242,11 +242,11 @@ class TestMinimal:
 
     def test_guard_condition_calls_callback(self, node):
         called = []
-        guard = node.create_guard_condition(lambda: called.append(1))
-        guard.trigger()
+        guard_condition = node.create_guard_condition(lambda: called.append(1))
+        guard_condition.trigger()
         rclpy.spin_once(node, timeout_sec=SECONDS)
         assert called == [1]
-        assert node.destroy_guard_condition(guard)
+        assert node.destroy_guard_condition(guard_condition)
 
     def test_rate_sleeps_beside_spinning_thread(self, node):
         thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=True)

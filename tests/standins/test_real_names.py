@@ -30,14 +30,14 @@ print(json.dumps(lacking))
 @pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 @pytest.mark.parametrize("package", ["rclpy", "ament_index_python", "rosidl_parser"])
 def test_real_modules_have_names_of_tables(package):
-    asked = {
+    requested_names = {
         module.name: [name for name, origin in module.names.items() if origin.since not in AFTER_JAZZY]
         for module in table.read(package).values()
         if module.since not in AFTER_JAZZY
     }
     result = subprocess.run(
         [PYTHON, "-c", LOOK],
-        input=json.dumps(asked),
+        input=json.dumps(requested_names),
         env={**os.environ, "PYTHONPATH": ""},
         capture_output=True,
         text=True,

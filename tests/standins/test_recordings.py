@@ -152,8 +152,10 @@ def test_metadata_is_written_and_read(tmp_path):
     reader, metadata_io = opened(tmp_path / "bag"), rosbag2_py.MetadataIo()
     metadata = metadata_io.read_metadata(str(tmp_path / "bag"))
     for entry in metadata.topics_with_message_count:
-        (known,) = (topic for topic in reader.get_all_topics_and_types() if topic.name == entry.topic_metadata.name)
-        assert entry.topic_metadata == dataclasses.replace(known, id=0)
+        (topic_entry,) = (
+            topic for topic in reader.get_all_topics_and_types() if topic.name == entry.topic_metadata.name
+        )
+        assert entry.topic_metadata == dataclasses.replace(topic_entry, id=0)
     assert [(file.path, file.message_count) for file in metadata.files] == [("bag_0.mcap", 8)]
     assert reader.get_metadata().files == metadata.files
     assert metadata_io.deserialize_metadata(metadata_io.serialize_metadata(metadata)).files == metadata.files

@@ -75,8 +75,8 @@ def windows() -> None:
         sys.modules.pop(name, None)
     remove(os, FUNCTIONS.split())
     subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has set it by asking the system
-    others = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
-    remove(signal, [*others, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
+    posix_signals = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
+    remove(signal, [*posix_signals, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
     remove(socket, SOCKETS)
     remove(select, ["epoll", "poll"])
     selectors.DefaultSelector = selectors.SelectSelector

@@ -451,14 +451,14 @@ def test_file_that_only_defines_main_is_run(write):
 
 
 def test_functions_and_modules_can_be_run_as_programs(write, monkeypatch, tmp_path):
-    said = []
+    texts = []
 
     def main():
         time.sleep(0.5)
-        said.append(time.monotonic())
+        texts.append(time.monotonic())
 
     run(main)
-    assert said == [0.5]
+    assert texts == [0.5]
     write("def main(): sys.exit(7)", "my_program_module.py")
     monkeypatch.syspath_prepend(tmp_path)
     assert run("my_program_module")[1].exit_code == 7

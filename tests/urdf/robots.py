@@ -78,14 +78,14 @@ def _links(draw, name: str, materials: dict[str, Material]) -> Link:
     inertial = st.builds(Inertial, numbers, numbers, numbers, numbers, numbers, numbers, numbers, poses)
     visuals = []
     for geometry in draw(st.lists(geometries, max_size=2)):
-        how = draw(st.sampled_from(["none", "named", "undefined", "own"]))
+        material_kind = draw(st.sampled_from(["none", "named", "undefined", "own"]))
         material_name, material = "", None
-        if how == "named" and materials:
+        if material_kind == "named" and materials:
             material_name = draw(st.sampled_from(sorted(materials)))
             material = materials[material_name]
-        elif how == "undefined":
+        elif material_kind == "undefined":
             material_name = "nowhere defined"
-        elif how == "own":
+        elif material_kind == "own":
             material = Material("", draw(colors))
         visuals.append(Visual(geometry, draw(poses), draw(names), material_name, material))
     collisions = draw(st.lists(st.builds(Collision, geometries, poses, names), max_size=2))

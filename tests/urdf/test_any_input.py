@@ -48,8 +48,8 @@ def elements(draw, rule: ElementRule, sloppy: bool) -> Element:
     element = Element(rule.tag)
     for attribute in rule.attributes:
         if not sloppy or draw(st.integers(0, 9)):
-            good = GOOD[attribute.type]
-            values = st.sampled_from(BAD + good if sloppy and not draw(st.integers(0, 9)) else good)
+            valid_values = GOOD[attribute.type]
+            values = st.sampled_from(BAD + valid_values if sloppy and not draw(st.integers(0, 9)) else valid_values)
             element.attributes[attribute.name] = draw(values)
     children = list(rule.children)
     if rule.tag == "geometry":
@@ -83,8 +83,8 @@ def robots(draw, sloppy: bool) -> Element:
         if sound():
             joint.attributes["name"] = f"joint{place}"
             joint.children += [Element(tag, {"link": f"link{end}"}) for tag, end in ends.items()]
-    others = [child for child in root.elements() if child.tag not in ("link", "joint")]
-    root.children = [*draw(st.permutations(others[:3])), *links, *joints]
+    other_elements = [child for child in root.elements() if child.tag not in ("link", "joint")]
+    root.children = [*draw(st.permutations(other_elements[:3])), *links, *joints]
     root.attributes = {"name": "r", "xmlns:xacro": "http://www.ros.org/wiki/xacro", **root.attributes}
     return root
 
@@ -104,8 +104,8 @@ def check(root: Element) -> None:
     tree_text(robot)
     tree = KinematicTree(robot)
     assert tree.forward([0.0] * len(tree.joint_names)).shape == (len(tree.link_names), 4, 4)
-    again = read(parse(save(robot), "saved.urdf"))
-    assert again.robot == robot
+    reread = read(parse(save(robot), "saved.urdf"))
+    assert reread.robot == robot
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.data_too_large])

@@ -13,10 +13,10 @@ from tests.urdf.robots import chain, robot_text, robots
 
 @given(robots())
 def test_round_trip_keeps_robot_and_order(robot):
-    again = read(parse(save(robot), "saved.urdf")).robot
-    assert again == robot
-    assert list(again.links) == list(robot.links)
-    assert list(again.joints) == list(robot.joints)
+    reread = read(parse(save(robot), "saved.urdf")).robot
+    assert reread == robot
+    assert list(reread.links) == list(robot.links)
+    assert list(reread.joints) == list(robot.joints)
 
 
 def test_saving_twice_returns_same_text():

@@ -35,7 +35,7 @@ ARM = """
 """
 
 
-def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Path:
+def recorded(path: Path, lift_positions: Sequence[float], transforms: bool = False) -> Path:
     """Record an arm, and a joint state each second that contains only one joint."""
     with BagWriter(path) as writer:
         writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
@@ -43,9 +43,9 @@ def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Pa
         if transforms:
             writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
             writer.write("/tf", START * SECOND, serialize(TFMessage(transforms=[])))
-        if lifts:
+        if lift_positions:
             writer.add_topic("/joint_states", "sensor_msgs/msg/JointState", [DEFAULT_QOS])
-        for second, lift in enumerate(lifts):
+        for second, lift in enumerate(lift_positions):
             states = JointState(name=["lift", "unknown"], position=[lift, 1.0])
             states.header.stamp.sec = START + second
             writer.write("/joint_states", (START + second) * SECOND, serialize(states))

@@ -96,10 +96,10 @@ async def test_known_frames_are_offered_as_options():
     async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         world.move_arm()
-        offered = await client.until("property_changed", id="global/Fixed Frame")
-        assert offered["options"] == ["base", "mark", "tip"]
-        offered = await client.until("property_changed", id="display-1/Reference Frame")
-        assert offered["options"] == ["<Fixed Frame>", "base", "mark", "tip"]
+        options_message = await client.until("property_changed", id="global/Fixed Frame")
+        assert options_message["options"] == ["base", "mark", "tip"]
+        options_message = await client.until("property_changed", id="display-1/Reference Frame")
+        assert options_message["options"] == ["<Fixed Frame>", "base", "mark", "tip"]
     options = world.viewer.config.options.rows()[0].options
     assert options == ["base", "mark", "tip"]
 
@@ -186,8 +186,8 @@ async def test_diagnostics_are_shown_with_line_and_cleared():
             "hints": ["did"],
         }
         assert items[1]["file"] is None
-        async with page(world.viewer) as late:
-            assert len((await late.opened())["diagnostics"]["items"]) == 2
+        async with page(world.viewer) as late_client:
+            assert len((await late_client.opened())["diagnostics"]["items"]) == 2
         world.viewer.show_diagnostics([])
         assert (await client.until("diagnostics"))["items"] == []
 
@@ -393,8 +393,8 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
                 assert response.headers.get("Content-Encoding") == encoding
                 assert response.headers["Vary"] == "Accept-Encoding"
                 assert await response.text() == "export {}"
-                known = {"Accept-Encoding": accepted, "If-None-Match": response.headers["ETag"]}
-            async with session.get(f"{base}assets/index-abc.js", headers=known) as response:
+                headers = {"Accept-Encoding": accepted, "If-None-Match": response.headers["ETag"]}
+            async with session.get(f"{base}assets/index-abc.js", headers=headers) as response:
                 assert (response.status, await response.read()) == (304, b"")
         async with session.get(f"{base}assets/gone.js") as response:
             assert response.status == 404

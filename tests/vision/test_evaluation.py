@@ -30,8 +30,8 @@ def detections_of(*rows, names=NAMES):
 
 def test_intersection_over_union_of_boxes():
     box = np.array([[0, 0, 10, 10]], np.float32)
-    others = np.array([[0, 0, 10, 10], [5, 0, 15, 10], [20, 20, 30, 30], [0, 0, 5, 5]], np.float32)
-    assert intersection_over_union(box, others)[0] == pytest.approx([1, 1 / 3, 0, 0.25])
+    other_boxes = np.array([[0, 0, 10, 10], [5, 0, 15, 10], [20, 20, 30, 30], [0, 0, 5, 5]], np.float32)
+    assert intersection_over_union(box, other_boxes)[0] == pytest.approx([1, 1 / 3, 0, 0.25])
 
 
 def test_perfect_detections_have_map_1():
@@ -109,11 +109,11 @@ def test_best_f1_threshold_is_score_of_last_useful_detection():
 
 
 @given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 60)), max_size=6), st.randoms())
-def test_evaluation_does_not_depend_on_order_of_detections(places, chance):
+def test_evaluation_does_not_depend_on_order_of_detections(places, rng):
     rows = [(kind, 0.3 + 0.1 * number, x, y, x + 20, y + 20) for number, (kind, x, y) in enumerate(places)]
     truth = [objects((0, 5, 5, 25, 25), (1, 40, 40, 60, 60))]
     mixed = rows[:]
-    chance.shuffle(mixed)
+    rng.shuffle(mixed)
     first, second = evaluate(NAMES, truth, [detections_of(*rows)]), evaluate(NAMES, truth, [detections_of(*mixed)])
     assert (first.map50, first.map) == (second.map50, second.map)
     assert 0 <= first.map <= first.map50 <= 1

@@ -102,9 +102,9 @@ class Process:
 
     def spin_until(self, condition: Callable[[], object], seconds: float = SECONDS) -> None:
         """Run callbacks until a condition is met, and fail after the time limit."""
-        until = time.monotonic() + seconds
+        deadline = time.monotonic() + seconds
         while not condition():
-            assert time.monotonic() < until, f"condition not met within {seconds} s"
+            assert time.monotonic() < deadline, f"condition not met within {seconds} s"
             self.executor.spin_once(timeout_sec=0.02)
 
     def warnings(self) -> list[str]:

@@ -35,14 +35,14 @@ class Program:
         name: str,
         *arguments: str,
         python: str = sys.executable,
-        within: Sequence[str] = (),
+        prefix_words: Sequence[str] = (),
         folder: Path | None = None,
         **environment: str,
     ) -> None:
         repository = FOLDER.parents[1]
         variables = {} if folder is None else {"PYTHONPATH": str(repository)}
         self.process = subprocess.Popen(
-            [*within, python, "-m", f"tests.wire.{name}", *arguments],
+            [*prefix_words, python, "-m", f"tests.wire.{name}", *arguments],
             cwd=folder or repository,
             env={**os.environ, **variables, **environment},
             stdin=subprocess.PIPE,

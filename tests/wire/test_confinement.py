@@ -47,15 +47,15 @@ def test_only_loopback_is_used_if_memberships_fail(monkeypatch):
     def refuse(addresses):
         raise OSError("no buffer space")
 
-    used = []
+    interfaces = []
     first_taken = open_domains._first_taken
 
     def note(number, configurations):
-        used.extend(configurations)
+        interfaces.extend(configurations)
         return first_taken(number, configurations)
 
     monkeypatch.setattr(open_domains, "confine", refuse)
     monkeypatch.setattr(open_domains, "_first_taken", note)
     asyncio.run(join_network().close())
-    assert used
-    assert not any("autodetermine" in configuration for configuration in used)
+    assert interfaces
+    assert not any("autodetermine" in configuration for configuration in interfaces)

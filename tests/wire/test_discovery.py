@@ -111,13 +111,19 @@ def test_killed_process_and_its_successor_are_listed_once(processes, programs):
 
 def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
     """Fast DDS 3 announces the machine ID, Fast DDS 2 and Cyclone the host name."""
-    here = socket.gethostname()
+    host_name = socket.gethostname()
     monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
-    for text in ("3d12", f"{here}:0", here):
+    for text in ("3d12", f"{host_name}:0", host_name):
         properties = {"fastdds.physical_data.host": text, "fastdds.physical_data.process": "42"}
-        assert next(discovery.announced_processes(lambda name, text=properties: text.get(name, ""))) == (here, "42")
-    elsewhere = {"__Hostname": "elsewhere", "__Pid": "42"}
-    assert list(discovery.announced_processes(lambda name: elsewhere.get(name, ""))) == [("", ""), ("elsewhere", "42")]
+        assert next(discovery.announced_processes(lambda name, text=properties: text.get(name, ""))) == (
+            host_name,
+            "42",
+        )
+    other_process = {"__Hostname": "elsewhere", "__Pid": "42"}
+    assert list(discovery.announced_processes(lambda name: other_process.get(name, ""))) == [
+        ("", ""),
+        ("elsewhere", "42"),
+    ]
 
 
 def test_fifty_nodes_with_services_are_discovered(processes, programs):

@@ -125,10 +125,10 @@ def test_close_ends_wait_for_discovery(processes):
 def test_reliable_messages_sent_before_close_arrive(processes):
     b = processes("b")
     numbers: list[int] = []
-    deep = QoSProfile(500)
-    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: numbers.append(message.data), deep)
+    deep_qos = QoSProfile(500)
+    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: numbers.append(message.data), deep_qos)
     a = processes("a")
-    publisher = a.node.create_publisher("std_msgs/msg/Int32", "chatter", deep)
+    publisher = a.node.create_publisher("std_msgs/msg/Int32", "chatter", deep_qos)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for number in range(300):
         publisher.publish(get_message("std_msgs/msg/Int32")(data=number))

@@ -202,23 +202,23 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
     ) as world:
         try:
             programs = []
-            for package, name, is_there in (
+            for package, name, is_present in (
                 ("my_senses", "command_listener", commands.get_subscription_count),
                 ("my_senses", "color_finder", lambda: process.node.count_subscribers("/camera/image_raw")),
                 ("my_mission", "go_to_ball", lambda: states and process.node.count_subscribers("/ball")),
             ):
                 programs.append(run(package, name, "use_sim_time:=true"))
-                process.spin_until(is_there, SECONDS)
+                process.spin_until(is_present, SECONDS)
             process.spin_until(lambda: places and process.node.count_publishers("/camera/image_raw"), SECONDS)
 
-            told = -inf
+            command_time = -inf
 
             def is_driving():
                 """Repeat the command, because not all nodes may know each other yet when the first one comes."""
-                nonlocal told
-                if time.monotonic() > told + 4.0:
+                nonlocal command_time
+                if time.monotonic() > command_time + 4.0:
                     commands.publish(String(data="去红球那里"))
-                    told = time.monotonic()
+                    command_time = time.monotonic()
                 return "driving" in states
 
             process.spin_until(is_driving, SECONDS)

@@ -176,16 +176,16 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
     publisher = process.node.create_publisher(Image, "/frames_to_ros", profile)
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
-    came: list[int] = []
+    arrived: list[int] = []
     for number in range(FRAMES):
         image.header.frame_id = str(number)
         publisher.publish(image)
-        until = time.monotonic() + 1.0
-        while number not in came and time.monotonic() < until:
+        deadline = time.monotonic() + 1.0
+        while number not in arrived and time.monotonic() < deadline:
             process.executor.spin_once(timeout_sec=0.01)
-            came = real.ask("received_images", "frames_to_ros")
+            arrived = real.ask("received_images", "frames_to_ros")
     # The reader is discovered before the second half is sent.
-    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2
+    assert len([number for number in arrived if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2
 
 
 def test_late_subscriber_gets_latched_message(processes, real_node):
@@ -193,10 +193,12 @@ def test_late_subscriber_gets_latched_message(processes, real_node):
     process.node.create_publisher(String, "/lasting_to_ros", LASTING).publish(String(data="said before"))
     real = real_node()
     assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
-    late = processes("late")
+    late_process = processes("late")
     texts: list[str] = []
-    late.node.create_subscription(String, "/lasting_from_ros", lambda message: texts.append(message.data), LASTING)
-    late.spin_until(lambda: texts == ["said before"])
+    late_process.node.create_subscription(
+        String, "/lasting_from_ros", lambda message: texts.append(message.data), LASTING
+    )
+    late_process.spin_until(lambda: texts == ["said before"])
 
 
 def test_endpoints_have_node_and_type_hash(processes, real_node):
@@ -240,15 +242,15 @@ def test_killed_real_node_is_received_again_after_restart(processes, real_node):
     first = real_node()
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     first.kill()
-    again = real_node()
+    second_peer = real_node()
     # The lease of the first node, 20 s, has not expired.
     process.spin_until(lambda: publisher.get_subscription_count() == 2)
-    began = time.monotonic()
+    start_s = time.monotonic()
     for number in range(8):
         publisher.publish(String(data=str(number)))
-    assert time.monotonic() - began < 1.0
-    assert again.ask_until(lambda heard: len(heard) == 8, "received", "to_ros") == list("01234567")
-    again.ask("publish", "back")
+    assert time.monotonic() - start_s < 1.0
+    assert second_peer.ask_until(lambda heard: len(heard) == 8, "received", "to_ros") == list("01234567")
+    second_peer.ask("publish", "back")
     process.spin_until(lambda: texts == ["back"])
 
 

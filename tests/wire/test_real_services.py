@@ -103,7 +103,7 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
     for thread in threads:
         thread.start()
     process.spin_until(client.service_is_ready)
-    mine = [
+    own_futures = [
         wait_for_result(process, client.call_async(camera_request(f"mine {number}"))).status_message
         for number in range(20)
     ]
@@ -111,7 +111,7 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
     for thread in threads:
         thread.join()
     assert counts == [CALLS // 5] * 3
-    assert mine == [f"mine {number}" for number in range(20)]
+    assert own_futures == [f"mine {number}" for number in range(20)]
 
 
 def test_history_of_real_publisher_is_unknown(processes, real_node):

@@ -26,15 +26,15 @@ def test_ros_node_and_endpoints_are_discovered(processes, programs, distribution
     process = processes("ours")
     process.spin_until(lambda: NodeIdentity("real_node", "/") in process.transport.remote_nodes())
     process.spin_until(lambda: len(process.transport.remote_endpoints()) >= 4)
-    seen = {
+    endpoints_by_name = {
         (remote_endpoint.kind, remote_endpoint.name): remote_endpoint
         for remote_endpoint in process.transport.remote_endpoints()
     }
-    assert seen[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
-    assert seen[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
-    assert seen[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"
-    assert seen[EndpointKind.CLIENT, "/our_flip"].node == NodeIdentity("real_node", "/")
-    hashes = seen[EndpointKind.PUBLISHER, "/from_ros"].type_hash
+    assert endpoints_by_name[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
+    assert endpoints_by_name[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
+    assert endpoints_by_name[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"
+    assert endpoints_by_name[EndpointKind.CLIENT, "/our_flip"].node == NodeIdentity("real_node", "/")
+    hashes = endpoints_by_name[EndpointKind.PUBLISHER, "/from_ros"].type_hash
     assert hashes == ("" if distribution == "humble" else type_hash(String))
 
 

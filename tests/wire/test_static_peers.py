@@ -44,15 +44,15 @@ def hosts() -> Iterator[Hosts]:
 def test_late_and_returning_static_peer_is_discovered(hosts):
     def start(host: str, other: str, name: str, **environment: str) -> Program:
         settings = {"CYCLONEDDS_URI": configuration(f"to{other}"), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
-        return Program("far_program", name, within=hosts.within(host), **settings, **environment)
+        return Program("far_program", name, prefix_words=hosts.within(host), **settings, **environment)
 
     desk = start(DESK, CLOUD, "desk", ROS_STATIC_PEERS=DESKS_CLOUD_ADDRESS)
     try:
         for name in ("first", "second"):
             time.sleep(2 * FORGOTTEN_AFTER)
-            late = start(CLOUD, DESK, name)
+            late_peer = start(CLOUD, DESK, name)
             desk.ask_until(lambda nodes, name=name: name in nodes, "nodes")
-            late.end()
+            late_peer.end()
             desk.ask_until(lambda nodes, name=name: name not in nodes, "nodes")
     finally:
         desk.end()

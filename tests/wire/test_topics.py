@@ -165,12 +165,12 @@ def test_incompatible_qos_is_reported_on_both_sides(processes):
 
     b.spin_until(lambda: reported(b))
     a.spin_until(lambda: reported(a))
-    (theirs,), (ours,) = reported(b), reported(a)
-    assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in theirs
-    assert "RELIABILITY" in theirs
-    assert "'/a'" in theirs
-    assert "New subscription discovered on topic '/chatter', requesting incompatible QoS" in ours
-    assert "'/b'" in ours
+    (remote_texts,), (local_texts,) = reported(b), reported(a)
+    assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in remote_texts
+    assert "RELIABILITY" in remote_texts
+    assert "'/a'" in remote_texts
+    assert "New subscription discovered on topic '/chatter', requesting incompatible QoS" in local_texts
+    assert "'/b'" in local_texts
 
 
 def test_qos_of_remote_endpoints_is_available(processes):
@@ -195,11 +195,11 @@ def test_qos_of_remote_endpoints_is_available(processes):
 
 def test_topic_can_avoid_ros_namespace_conventions(processes):
     a, b = processes("a"), processes("b")
-    plain = QoSProfile(10, avoid_ros_namespace_conventions=True)
+    plain_qos = QoSProfile(10, avoid_ros_namespace_conventions=True)
     texts: list[str] = []
-    b.node.create_subscription(String, "/plain", lambda message: texts.append(message.data), plain)
+    b.node.create_subscription(String, "/plain", lambda message: texts.append(message.data), plain_qos)
     b.node.create_subscription(String, "/plain", lambda message: texts.append("ros"), 10)
-    publisher = a.node.create_publisher(String, "/plain", plain)
+    publisher = a.node.create_publisher(String, "/plain", plain_qos)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.publish(String(data="hej"))
     b.spin_until(lambda: texts)
@@ -278,31 +278,31 @@ def test_lost_liveliness_of_remote_publisher_is_reported(processes):
     manual = QoSProfile(
         5, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(nanoseconds=400_000_000)
     )
-    seen = []
-    callbacks = SubscriptionEventCallbacks(liveliness=seen.append)
+    events = []
+    callbacks = SubscriptionEventCallbacks(liveliness=events.append)
     b.node.create_subscription(String, "chatter", print, manual, event_callbacks=callbacks)
     publisher = a.node.create_publisher(String, "chatter", manual)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.assert_liveliness()
-    b.spin_until(lambda: seen and seen[-1].not_alive_count == 1)
+    b.spin_until(lambda: events and events[-1].not_alive_count == 1)
 
     def is_alive_again() -> bool:
         publisher.publish(String())  # a publisher that is discovered late may already count as silent
-        return seen[-1].alive_count == 1 and seen[-1].not_alive_count == 0
+        return events[-1].alive_count == 1 and events[-1].not_alive_count == 0
 
     b.spin_until(is_alive_again)
 
 
 def test_best_available_qos_considers_remote_endpoints(processes):
     process, peer = processes("us"), processes("them")
-    best = QoSPresetProfiles.BEST_AVAILABLE.value
+    best_available = QoSPresetProfiles.BEST_AVAILABLE.value
     peer.node.create_publisher(String, "/scan", QoSPresetProfiles.SENSOR_DATA.value)
     peer.node.create_subscription(String, "/command", print, QoSProfile(1, deadline=Duration(seconds=2)))
     process.spin_until(
         lambda: process.node.count_publishers("/scan") == process.node.count_subscribers("/command") == 1
     )
-    process.node.create_subscription(String, "/scan", print, best)
-    process.node.create_publisher(String, "/command", best)
+    process.node.create_subscription(String, "/scan", print, best_available)
+    process.node.create_publisher(String, "/command", best_available)
     (endpoint,) = process.node.get_subscriptions_info_by_topic("/scan")
     assert endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
     (offered,) = process.node.get_publishers_info_by_topic("/command")

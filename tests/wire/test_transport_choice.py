@@ -32,7 +32,7 @@ def installed(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("packages", "variables", "chosen", "is_there"),
+    ("packages", "variables", "chosen", "is_installed"),
     [
         (["cyclonedds", "zenoh", "xxhash"], {}, CYCLONE, True),
         (["cyclonedds", "zenoh", "xxhash"], ASKED, ZENOH, True),
@@ -45,11 +45,11 @@ def installed(monkeypatch):
     ],
 )
 def test_rmw_implementation_selects_transport_before_installed_packages(
-    installed, packages, variables, chosen, is_there
+    installed, packages, variables, chosen, is_installed
 ):
     installed(*packages)
     assert middleware(variables) == chosen
-    assert is_available(variables) is is_there
+    assert is_available(variables) is is_installed
 
 
 def test_missing_packages_are_reported(installed):
@@ -77,10 +77,10 @@ def test_process_without_transport_logs_and_continues(installed):
 
 @pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="cyclonedds is not installed")
 def test_settings_of_chosen_transport_are_checked():
-    wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
-    check_settings(wrong)
+    invalid_variables = {"ZENOH_CONFIG_OVERRIDE": "mode"}
+    check_settings(invalid_variables)
     with pytest.raises(LinkwrightError, match="is not a Zenoh setting"):
-        check_settings({**ASKED, **wrong})
+        check_settings({**ASKED, **invalid_variables})
     for variables in ({}, ASKED):
         with pytest.raises(LinkwrightError, match="is not a DDS domain"):
             check_settings({**variables, "ROS_DOMAIN_ID": "233"})

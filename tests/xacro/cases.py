@@ -81,8 +81,8 @@ def without_banner(text: str) -> str:
 
 def described(diagnostic: Diagnostic, folder: Path) -> str:
     """Return a diagnostic in the notation of the Markdown files."""
-    where = f"{_place(diagnostic.span, folder)}: " if diagnostic.span else ""
-    lines = [f"{where}{diagnostic.severity.value} {diagnostic.code}: {diagnostic.message}"]
+    location = f"{_place(diagnostic.span, folder)}: " if diagnostic.span else ""
+    lines = [f"{location}{diagnostic.severity.value} {diagnostic.code}: {diagnostic.message}"]
     lines += [f"  note: {note.message}{_in_brackets(note.span, folder)}" for note in diagnostic.notes]
     if diagnostic.hint:
         lines.append(f"  hint: {diagnostic.hint}")

@@ -343,8 +343,8 @@ def test_lists_growing_across_macro_calls_are_stopped() -> None:
         '<xacro:r n="${n-1}"/></xacro:macro>'
     )
     for first in ("'ab'", "3", "[1]"):
-        given = f'<xacro:property name="items" value="${{[{first}]}}"/>'
-        assert codes(f'{ROOT}{body}{given}<xacro:r n="100"/></robot>')[0] in ("XAC204", "XAC601")
+        first_list = f'<xacro:property name="items" value="${{[{first}]}}"/>'
+        assert codes(f'{ROOT}{body}{first_list}<xacro:r n="100"/></robot>')[0] in ("XAC204", "XAC601")
 
 
 @pytest.mark.parametrize(

@@ -47,9 +47,9 @@ def test_expanded_text_has_banner(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_arguments_of_caller_are_not_changed(tmp_path: Path) -> None:
     main = write(tmp_path, main='<xacro:arg name="a" default="1"/><x v="$(arg a)"/>')
-    given: dict[str, str] = {}
-    assert expand(main, given).arguments == {"a": "1"}
-    assert given == {}
+    arguments: dict[str, str] = {}
+    assert expand(main, arguments).arguments == {"a": "1"}
+    assert arguments == {}
     assert expand(main, {"a": "2", "other": "3"}).arguments == {"a": "2", "other": "3"}
     assert 'v="1"' in str(expand(main))
 
@@ -199,10 +199,10 @@ def test_bugs_of_ros_xacro_are_not_reproduced(tmp_path: Path) -> None:
 def test_import_of_expand_loads_no_heavy_modules() -> None:
     """The room imports neither slow modules nor modules that only some files need."""
     names = loaded_by("from linkwright.xacro import expand")
-    heavy = {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"}
+    heavy_modules = {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"}
     stands_for_less = {"ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "typing", "warnings"}
     assert "linkwright.xacro.expansion" in names
-    assert not (heavy | stands_for_less | {"argparse", "linkwright.xacro.tracing", "xml.parsers"}) & names
+    assert not (heavy_modules | stands_for_less | {"argparse", "linkwright.xacro.tracing", "xml.parsers"}) & names
 
 
 def test_file_that_is_not_utf_8_has_one_warning(tmp_path: Path) -> None:

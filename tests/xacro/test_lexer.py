@@ -81,8 +81,8 @@ def test_text_without_dollars_is_unchanged(text: str) -> None:
 
 
 @given(st.text(alphabet="ab {$(", max_size=10), st.integers(min_value=1, max_value=4))
-def test_escaping_removes_one_dollar(rest: str, dollars: int) -> None:
-    rest = rest.replace("$", "")
-    tokens = tokenize("$" * (dollars + 1) + "{" + rest)
-    assert "".join(token.text for token in tokens) == "$" * dollars + "{" + rest
+def test_escaping_removes_one_dollar(rest_of_text: str, dollars: int) -> None:
+    rest_of_text = rest_of_text.replace("$", "")
+    tokens = tokenize("$" * (dollars + 1) + "{" + rest_of_text)
+    assert "".join(token.text for token in tokens) == "$" * dollars + "{" + rest_of_text
     assert all(token.kind is TokenKind.TEXT for token in tokens)

@@ -38,10 +38,10 @@ def problems(expansion: Expansion) -> list[str]:
 
 def test_parts_of_valid_description_are_complete(tmp_path):
     body = '<xacro:property name="a" value="1"/><link name="l${a}"><inertial><mass value="${a}"/></inertial></link>'
-    whole = parts(tmp_path, body)
+    complete_parts = parts(tmp_path, body)
     expansion = expand_parts(Inputs(str(tmp_path / "robot.xacro"), {}), LinkwrightError(Diagnostic("XAC201", "")))
     assert expansion.problems == ()
-    assert write_element(expansion.document.root) == write_element(whole.document.root)
+    assert write_element(expansion.document.root) == write_element(complete_parts.document.root)
 
 
 def test_element_with_failed_attribute_omits_its_ancestors(tmp_path):

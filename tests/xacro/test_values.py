@@ -14,9 +14,9 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 def values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
     """Return the values of each text with expressions, by its position."""
-    whole = f"{HEAD}{text}</robot>"
-    expressions = evaluated_expressions(Inputs("r.xacro", arguments, text=whole))
-    return {whole[part.start : part.end]: part.values for part in expressions}
+    document_text = f"{HEAD}{text}</robot>"
+    expressions = evaluated_expressions(Inputs("r.xacro", arguments, text=document_text))
+    return {document_text[part.start : part.end]: part.values for part in expressions}
 
 
 def test_values_of_each_macro_call_are_listed():

@@ -15,7 +15,7 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 
 @dataclass
-class Answer:
+class CommandResult:
     """The output and the exit status of a command."""
 
     status: int
@@ -42,13 +42,13 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
 
 
 @pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., Answer]:
+def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., CommandResult]:
     """Return a function that runs ``linkwright xacro``."""
 
-    def command(*words: str) -> Answer:
+    def command(*words: str) -> CommandResult:
         capsys.readouterr()
         status = main(["xacro", *words])
         captured = capsys.readouterr()
-        return Answer(status, captured.out, captured.err)
+        return CommandResult(status, captured.out, captured.err)
 
     return command

@@ -36,8 +36,8 @@ def robot(write):
     )
 
 
-def explain_one(path, name, *rest, **options):
-    (found,) = explain(path, name, *rest, **options)
+def explain_one(path, name, *explain_options, **options):
+    (found,) = explain(path, name, *explain_options, **options)
     return found
 
 
@@ -104,8 +104,8 @@ def test_attribute_set_by_xacro_attribute_tag_is_traced(robot):
 def test_provenance_of_expanded_element_matches_explain(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
-    found, same = expansion.provenance(link), explain_one(robot, "left_wheel")
-    assert (found.span, found.calls, found.attributes) == (same.span, same.calls, same.attributes)
+    found, explanation = expansion.provenance(link), explain_one(robot, "left_wheel")
+    assert (found.span, found.calls, found.attributes) == (explanation.span, explanation.calls, explanation.attributes)
     cylinder = next(link.elements("cylinder"))
     assert expansion.provenance(cylinder).calls == expansion.provenance(link).calls
 

@@ -110,14 +110,14 @@ def test_standard_input_is_expanded(write, run, monkeypatch):
 
 def test_quiet_option_prints_only_errors(write, run):
     write("a.xacro", '<xacro:property name="pi" value="3"/>${xacro.warning("w")}${xacro.error("e")}')
-    loud = run("a.xacro").err
-    assert "XAC306" in loud
-    assert "XAC703" in loud
+    errors = run("a.xacro").err
+    assert "XAC306" in errors
+    assert "XAC703" in errors
     for words in (["-q"], ["--verbosity", "0"], ["--verbosity=0"]):
-        quiet = run("a.xacro", *words)
-        assert quiet.err.startswith("error[XAC702]: e")
-        assert "warning[" not in quiet.err
-        assert quiet.out == run("a.xacro").out
+        quiet_result = run("a.xacro", *words)
+        assert quiet_result.err.startswith("error[XAC702]: e")
+        assert "warning[" not in quiet_result.err
+        assert quiet_result.out == run("a.xacro").out
 
 
 PROPERTIES = """
@@ -174,9 +174,9 @@ def test_verbosity_log_ends_where_expansion_fails(write, run):
     write("a.xacro", '<xacro:property name="a" value="1"/>\n<l v="${a}"/>\n<l v="${no}"/>')
     result = run("a.xacro", "--verbosity", "3")
     assert result.status == 1
-    log, _, rest = result.err.partition("the expansion ends here\n")
+    log, _, text_after_end = result.err.partition("the expansion ends here\n")
     assert log == "set a: 1 (a.xacro:2:1)\nuse a: 1 (a.xacro:3:1)\n"
-    assert rest.startswith("error[XAC201]")
+    assert text_after_end.startswith("error[XAC201]")
 
 
 def test_verbosity_logs_namespace_properties(write, run):

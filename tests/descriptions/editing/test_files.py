@@ -116,12 +116,12 @@ def test_files_outside_workspace_or_installed_are_rejected(tmp_path: Path) -> No
 
     other = tmp_path / "other.xacro"
     other.write_text("")
-    ours = Path(descriptions.__file__).resolve()
+    program_file = Path(descriptions.__file__).resolve()
     installed = tmp_path / "mine" / "install" / "share" / "robot" / "robot.urdf"
     installed.parent.mkdir(parents=True)
     installed.write_text("")
     (installed.parents[1] / "ament_index").mkdir()
-    for path, reason in ((other, "outside the workspace"), (ours, "this program"), (installed, "installed")):
+    for path, reason in ((other, "outside the workspace"), (program_file, "this program"), (installed, "installed")):
         refusal = workspace.refusal(os.path.realpath(path))
         assert refusal is not None
         assert refusal.code == "EDIT106"

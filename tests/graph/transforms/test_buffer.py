@@ -116,11 +116,11 @@ def test_revision_changes_only_with_names_and_parents():
 
 def test_two_publishers_of_frame_alternate():
     buffer = TransformBuffer()
-    ours, theirs = message(("world", "base", 1.0)), message(("odom", "base", 5.0))
+    first_message, second_message = message(("world", "base", 1.0)), message(("odom", "base", 5.0))
     for _ in range(2):
-        buffer.update(ours, static=False, now_ns=0)
+        buffer.update(first_message, static=False, now_ns=0)
         assert buffer.lookup("world", "base")[0] == 1.0
-        buffer.update(theirs, static=False, now_ns=0)
+        buffer.update(second_message, static=False, now_ns=0)
         assert buffer.lookup("odom", "base")[0] == 5.0
         with pytest.raises(ConnectivityException):
             buffer.lookup("world", "base")

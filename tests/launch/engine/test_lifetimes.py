@@ -201,8 +201,10 @@ class TestCounts:
         assert counts[0][1] >= len(children) + 2  # the program and the guardian
 
         def left() -> list[object]:
-            ours = [thread for thread in threading.enumerate() if thread not in threads and not _is_pooled(thread)]
-            return [*ours, *(child for child in me.children(recursive=True) if child.pid not in children)]
+            new_threads = [
+                thread for thread in threading.enumerate() if thread not in threads and not _is_pooled(thread)
+            ]
+            return [*new_threads, *(child for child in me.children(recursive=True) if child.pid not in children)]
 
         await eventually(lambda: not left(), what=lambda: f"left behind: {left()}")
 

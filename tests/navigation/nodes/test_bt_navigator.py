@@ -54,8 +54,12 @@ async def robot(graph, clock):
     options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True})
     for name, value in LOCAL.items():
         options.parameters_of_others.set("/local_costmap/local_costmap", name, value)
-    own = NodeOptions(parameters={"autostart_node": True})
-    nodes = [ControllerServer(graph, options), BehaviorServer(graph, own), BtNavigator(graph, own)]
+    navigator_options = NodeOptions(parameters={"autostart_node": True})
+    nodes = [
+        ControllerServer(graph, options),
+        BehaviorServer(graph, navigator_options),
+        BtNavigator(graph, navigator_options),
+    ]
     follower = {"autostart_node": True, "stop_on_failure": False}
     nodes.append(WaypointFollower(graph, NodeOptions(parameters=follower)))
     robot.planner = planner

@@ -51,9 +51,9 @@ def robot(graph, clock) -> FakeRobot:
 def start(graph, robot):
     nodes = []
 
-    def start(name="global_costmap", parameters=GLOBAL, **more):
+    def start(name="global_costmap", parameters=GLOBAL, **server_parameters):
         options = NodeOptions()
-        for key, value in {**parameters, **more}.items():
+        for key, value in {**parameters, **server_parameters}.items():
             options.parameters_of_others.set(f"/{name}/{name}", key, value)
         node = make_costmap(robot.node, graph, options, name)
         nodes.append(node)

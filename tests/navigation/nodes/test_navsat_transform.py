@@ -127,9 +127,11 @@ async def test_datum_is_used_by_conversion_services(test):
     zone = zone_from_degrees(*HERE)
     x, y = utm_from_degrees(*HERE, zone)
     request.ll_point.latitude, request.ll_point.longitude = degrees_from_utm(x + 20.0, y - 7.0, zone)
-    there = (await test.call("/fromLL", request)).map_point
-    assert (there.x, there.y) == pytest.approx((20.0, -7.0), abs=1e-6)
-    ll_point = (await test.call("/toLL", get_service("robot_localization/srv/ToLL").Request(map_point=there))).ll_point
+    converted_point = (await test.call("/fromLL", request)).map_point
+    assert (converted_point.x, converted_point.y) == pytest.approx((20.0, -7.0), abs=1e-6)
+    ll_point = (
+        await test.call("/toLL", get_service("robot_localization/srv/ToLL").Request(map_point=converted_point))
+    ).ll_point
     assert (ll_point.latitude, ll_point.longitude) == pytest.approx(
         (request.ll_point.latitude, request.ll_point.longitude), abs=1e-9
     )
@@ -141,8 +143,8 @@ async def test_datum_is_used_by_conversion_services(test):
     datum.geo_pose.position = request.ll_point
     set_yaw(datum.geo_pose.orientation, 0.0)
     await test.call("/datum", datum)
-    there = (await test.call("/fromLL", request)).map_point
-    assert (there.x, there.y) == pytest.approx((0.0, 0.0), abs=1e-6)
+    converted_point = (await test.call("/fromLL", request)).map_point
+    assert (converted_point.x, converted_point.y) == pytest.approx((0.0, 0.0), abs=1e-6)
     zone_request = get_service("robot_localization/srv/SetUTMZone").Request
     assert (await test.call("/setUTMZone", zone_request(utm_zone="31U"))).status
     assert not (await test.call("/setUTMZone", zone_request(utm_zone="99"))).status

@@ -108,12 +108,12 @@ def test_potential_in_open_space_is_distance():
 
 @pytest.mark.parametrize("seed", range(12))
 def test_potential_matches_dijkstra(seed):
-    price = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
-    potential, truth = run_to_end(compute_potential(price, (2, 2))), dijkstra(price, (2, 2))
+    crossing_costs = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
+    potential, truth = run_to_end(compute_potential(crossing_costs, (2, 2))), dijkstra(crossing_costs, (2, 2))
     is_reached = np.isfinite(potential)
     assert np.array_equal(np.isfinite(truth), is_reached)
     is_far = is_reached & (truth > 10 * NEUTRAL_COST)
-    between_middles = potential[is_far] - price[is_far] / 2.0 - price[2, 2] / 2.0
+    between_middles = potential[is_far] - crossing_costs[is_far] / 2.0 - crossing_costs[2, 2] / 2.0
     assert (between_middles <= 1.15 * truth[is_far]).all()  # first order, with the largest error near the start
     assert (potential[is_far] >= 0.9 * truth[is_far]).all()  # not limited to eight directions
 
@@ -129,10 +129,10 @@ def test_potential_reaches_exactly_connected_cells(obstacles):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_heuristic_search_gives_same_cost(seed):
-    price = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
-    full_potential = run_to_end(compute_potential(price, (2, 2)))
+    crossing_costs = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
+    full_potential = run_to_end(compute_potential(crossing_costs, (2, 2)))
     for heuristic in (False, True):
-        directed_potential = run_to_end(compute_potential(price, (2, 2), (57, 57), heuristic=heuristic))
+        directed_potential = run_to_end(compute_potential(crossing_costs, (2, 2), (57, 57), heuristic=heuristic))
         assert directed_potential[57, 57] == pytest.approx(full_potential[57, 57], rel=1e-3)
         assert np.isfinite(directed_potential).sum() <= np.isfinite(full_potential).sum()
 
@@ -151,20 +151,20 @@ def test_plan_in_open_space_is_straight():
 @pytest.mark.parametrize("seed", range(25))
 def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
     robot = inflated_costmap(rooms(seed))
-    price = crossing_prices(robot.grid.cells)
-    if not np.isfinite(price[[2, 57], [2, 57]]).all():
+    crossing_costs = crossing_prices(robot.grid.cells)
+    if not np.isfinite(crossing_costs[[2, 57], [2, 57]]).all():
         return
-    truth = dijkstra(price, (2, 2))[57, 57]
+    truth = dijkstra(crossing_costs, (2, 2))[57, 57]
     try:
         path = plan_path(robot, (0.25, 0.25), (5.75, 5.75), tolerance=0.0)
     except PlanError:
-        assert not np.isfinite(run_to_end(compute_potential(price, (2, 2)))[57, 57])
+        assert not np.isfinite(run_to_end(compute_potential(crossing_costs, (2, 2)))[57, 57])
         return
     assert highest_cost(robot, path) <= MAX_PASSABLE
     midpoints = (path[1:, :2] + path[:-1, :2]) / 2.0
     cells = robot.grid.cells_of(midpoints)
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T) / RESOLUTION
-    assert (price[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL_COST
+    assert (crossing_costs[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL_COST
 
 
 def test_plan_passes_through_maze():

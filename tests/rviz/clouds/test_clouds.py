@@ -88,9 +88,9 @@ def test_big_endian_clouds_are_read():
     assert points.channels["intensity"].tolist() == [513]
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_points_without_finite_coordinates_are_left_out(bad):
-    array = xyz([(1, 2, 3), (4, bad, 6), (7, 8, 9)], ("intensity", "f4"))
+@pytest.mark.parametrize("invalid_value", [math.nan, math.inf, -math.inf])
+def test_points_without_finite_coordinates_are_left_out(invalid_value):
+    array = xyz([(1, 2, 3), (4, invalid_value, 6), (7, 8, 9)], ("intensity", "f4"))
     array["intensity"] = [1, 2, 3]
     points = points_of_cloud(cloud(array))
     assert points.positions.tolist() == [[1, 2, 3], [7, 8, 9]]
@@ -344,6 +344,6 @@ def test_deskew_places_rays_at_their_emission_pose():
 
 def test_deskew_interpolates_along_shorter_rotation():
     points = Points(np.array([[1, 0, 0]], np.float32))
-    same = np.array([0.0, 0, 0, 0, 0, 0, 1])
-    moved = deskew(points, np.array([0.5]), same, -same).positions
+    identity = np.array([0.0, 0, 0, 0, 0, 0, 1])
+    moved = deskew(points, np.array([0.5]), identity, -identity).positions
     np.testing.assert_allclose(moved, [[1, 0, 0]], atol=1e-6)

@@ -100,19 +100,19 @@ async def test_untitled_displays_are_kept_for_recovery(tmp_path):
 
 
 async def test_displays_of_own_page_have_separate_recovery_file(tmp_path):
-    async with opened(path=tmp_path / "a.rviz") as (world, client), own_page(world) as own:
-        first = await own.opened()
+    async with opened(path=tmp_path / "a.rviz") as (world, client), own_page(world) as own_client:
+        first = await own_client.opened()
         await change(client)
-        await own.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
-        await own.until("configuration", unsaved=True)
+        await own_client.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
+        await own_client.until("configuration", unsaved=True)
         assert [diagnostic.code for diagnostic in world.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
-    shared, single = (
+    shared, own_file = (
         recovery_files()
         if len(recovery_files()[0].stem) < len(recovery_files()[1].stem)
         else reversed(recovery_files())
     )
     assert "Alpha: 0.25" in shared.read_text()
-    assert "Alpha: 0.125" in single.read_text()
+    assert "Alpha: 0.125" in own_file.read_text()
 
 
 def test_configurations_have_separate_recovery_files(tmp_path, monkeypatch):

@@ -57,9 +57,9 @@ def test_configuration_for_model_has_grid_robot_model_and_tf():
     config = RvizConfig.for_model("base_link")
     assert [display.name for display in config.displays] == ["Grid", "RobotModel", "TF"]
     assert all(display.enabled for display in config.displays)
-    again = RvizConfig.parse(config.text())
-    assert [display.cls for display in again.displays] == [display.cls for display in config.displays]
-    assert (again.options.text("Fixed Frame"), again.views.current.values["Distance"]) == ("base_link", 3.0)
+    reread = RvizConfig.parse(config.text())
+    assert [display.cls for display in reread.displays] == [display.cls for display in config.displays]
+    assert (reread.options.text("Fixed Frame"), reread.views.current.values["Distance"]) == ("base_link", 3.0)
 
 
 @pytest.mark.parametrize(
@@ -73,12 +73,12 @@ def test_configuration_for_model_has_grid_robot_model_and_tf():
 )
 def test_grid_and_axes_scale_with_model_size(size, cell, marker_scale, distance):
     config = RvizConfig.for_model("base_link", size=size)
-    again = RvizConfig.parse(config.text())
-    grid, _, tf = again.displays
+    reread = RvizConfig.parse(config.text())
+    grid, _, tf = reread.displays
     assert grid.section.scalar("Cell Size").text == f"{cell:g}"
     assert tf.section.scalar("Marker Scale").text == f"{marker_scale:g}"
-    assert again.views.current.values["Distance"] == distance
-    assert again.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
+    assert reread.views.current.values["Distance"] == distance
+    assert reread.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
 
 
 def sized(config, diagonal, ground=0.0):
@@ -253,8 +253,8 @@ def test_displays_are_added_removed_and_moved():
     (laser,) = sensors.displays
     config.remove(grid)
     config.insert(grid, sensors, 0)
-    twin = config.duplicate(laser)
-    config.insert(twin, None, 0)
+    duplicate = config.duplicate(laser)
+    config.insert(duplicate, None, 0)
     group = config.make_group("New")
     config.insert(group, sensors)
     assert [display.name for display in config.walk()] == ["Laser", "Sensors", "Grid", "Laser", "New"]
@@ -296,7 +296,7 @@ def test_undo_of_first_display_restores_file(text):
 
 
 @pytest.mark.parametrize(
-    ("lines", "on"),
+    ("lines", "is_enabled"),
     [
         ("Enabled: true", True),
         ("Enabled: TRUE", True),
@@ -313,9 +313,9 @@ def test_undo_of_first_display_restores_file(text):
         ("Name: x", False),
     ],
 )
-def test_enabled_values_are_parsed_like_rviz(lines, on):
+def test_enabled_values_are_parsed_like_rviz(lines, is_enabled):
     config = RvizConfig.parse(f"Visualization Manager:\n  Displays:\n    - {{Class: rviz/Grid, {lines}}}\n")
-    assert config.displays[0].checked is on
+    assert config.displays[0].checked is is_enabled
 
 
 def test_entry_that_is_not_a_display_keeps_its_position():

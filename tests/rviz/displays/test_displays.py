@@ -99,8 +99,8 @@ async def test_grid_in_unknown_frame_is_reported():
 # --- TF ------------------------------------------------------------------------------------------------------------
 
 
-def tf(more: str = "") -> str:
-    return f"    - {{Class: rviz_default_plugins/TF, Enabled: true{more}}}\n"
+def tf(properties: str = "") -> str:
+    return f"    - {{Class: rviz_default_plugins/TF, Enabled: true{properties}}}\n"
 
 
 async def test_tf_display_lists_frames():

@@ -271,7 +271,7 @@ async def test_polygon_is_sent_as_corners():
 
 
 @pytest.mark.parametrize(
-    ("measured", "least", "most", "shown"),
+    ("measured", "min_range", "max_range", "shown"),
     [
         (0.5, 0.1, 2.0, 0.5),
         (0.05, 0.1, 2.0, 0.0),
@@ -281,10 +281,12 @@ async def test_polygon_is_sent_as_corners():
         (math.nan, 0.3, 0.3, 0.0),
     ],
 )
-async def test_range_length_is_zero_if_invalid(measured, least, most, shown):
+async def test_range_length_is_zero_if_invalid(measured, min_range, max_range, shown):
     async with open_world(config("Range")) as world:
         world.move_arm()
-        reading = message("sensor_msgs/msg/Range", range=measured, min_range=least, max_range=most, field_of_view=0.2)
+        reading = message(
+            "sensor_msgs/msg/Range", range=measured, min_range=min_range, max_range=max_range, field_of_view=0.2
+        )
         publisher(world, "Range").publish(reading)
         await world.settle()
         (content,) = contents(world.display("Range"))
@@ -328,17 +330,17 @@ async def test_nonfinite_values_are_rejected(cls):
     async with open_world(config(cls)) as world:
         world.move_arm()
         instance = message(world.display(cls).MESSAGE)
-        bad = pose(math.nan)
+        invalid_pose = pose(math.nan)
         if cls == "Pose":
-            instance.pose = bad
+            instance.pose = invalid_pose
         elif cls == "PoseArray":
-            instance.poses = [bad]
+            instance.poses = [invalid_pose]
         elif cls == "Path":
-            instance.poses = [message("geometry_msgs/msg/PoseStamped", pose=bad)]
+            instance.poses = [message("geometry_msgs/msg/PoseStamped", pose=invalid_pose)]
         elif cls == "Polygon":
             instance.polygon.points = [get_message("geometry_msgs/msg/Point32")(x=math.inf)]
         else:
-            instance.pose.pose = bad
+            instance.pose.pose = invalid_pose
         publisher(world, cls).publish(instance)
         await world.settle()
         assert world.status(cls)["Message"] == INVALID

@@ -126,8 +126,8 @@ async def test_panel_of_closed_page_is_ignored():
     async with open_world(config("Image")) as world:
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(small_image(1, 2, 3))
-        async with page(world.viewer) as only:
-            await only.send("image_size", display=world.display("Image").id, width=30, height=18)
+        async with page(world.viewer) as only_client:
+            await only_client.send("image_size", display=world.display("Image").id, width=30, height=18)
             await eventually(lambda: world.display("Image")._panel)
             assert publisher.get_subscription_count() == 1
         await eventually(lambda: publisher.get_subscription_count() == 0)
@@ -269,12 +269,12 @@ async def test_malformed_camera_info_is_reported():
             assert contents(world.display("Camera"))[0].fields["camera"] is None
             return world.status("Camera")["Camera Info"]
 
-        bad = info()
-        bad.p[0] = math.nan
-        assert await status(bad) == ("error", "Contains invalid floating point values (nans or infs)")
-        bad = info()
-        bad.p[0] = 0.0
-        assert (await status(bad))[0] == "error"
+        invalid_info = info()
+        invalid_info.p[0] = math.nan
+        assert await status(invalid_info) == ("error", "Contains invalid floating point values (nans or infs)")
+        invalid_info = info()
+        invalid_info.p[0] = 0.0
+        assert (await status(invalid_info))[0] == "error"
         empty = info(0, 0)
         infos.publish(empty)
         images.publish(small_image())

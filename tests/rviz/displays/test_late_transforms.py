@@ -75,15 +75,15 @@ async def drive(world: World, tf_delay: float) -> None:
     """Publish a robot's transforms at 20 Hz, later than the messages of its sensors."""
     driver, now_ns = world.graph.create_node("driver"), world.graph.timebase.now_ns
     publishers = {cls: driver.create_publisher(type(message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
-    here = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}
-    world.move(here)
+    poses = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}
+    world.move(poses)
     await world.settle()
 
     def publish_sensor_message(cls: str) -> None:
         publishers[cls].publish(message(cls, now_ns()))
 
     def move_later() -> None:
-        asyncio.get_running_loop().call_later(tf_delay, world.move, here)
+        asyncio.get_running_loop().call_later(tf_delay, world.move, poses)
 
     sensing = (call_periodically(period, partial(publish_sensor_message, cls)) for cls, period in SENSORS.items())
     await asyncio.gather(*sensing, call_periodically(TF_PERIOD, move_later))

@@ -159,9 +159,9 @@ async def test_invalid_maps_are_reported_with_messages_of_rviz():
         assert await status(grid(0, 4)) == ("error", "Map is zero-sized (0x4)")
         text = "Data size doesn't match width*height: width = 3, height = 2, data size = 1"
         assert await status(grid(data=[0])) == ("error", text)
-        bad = grid()
-        bad.info.resolution = math.nan
-        assert await status(bad) == ("error", "Message contained invalid floating point values (nans or infs)")
+        invalid_map = grid()
+        invalid_map.info.resolution = math.nan
+        assert await status(invalid_map) == ("error", "Message contained invalid floating point values (nans or infs)")
 
 
 async def test_update_topic_follows_map_topic():

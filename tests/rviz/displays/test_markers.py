@@ -160,9 +160,9 @@ async def test_markers_are_deleted_individually_and_all():
 async def test_marker_disappears_after_lifetime():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, page, _ = publisher_and_watcher(world)
-        mortal = marker(1)
-        mortal.lifetime.nanosec = 1_000_000
-        publisher.publish(mortal)
+        short_lived = marker(1)
+        short_lived.lifetime.nanosec = 1_000_000
+        publisher.publish(short_lived)
         publisher.publish(marker(2))
         await world.settle()
         page.look()
@@ -208,10 +208,10 @@ async def test_late_page_receives_all_markers():
             publisher.publish(marker(number))
             await world.settle()
             page.look()
-        late = Watcher(display.data()[0])
-        late.look()
-        assert sorted(late.markers) == sorted(page.markers) == ["a/0", "a/1", "a/2"]
-        assert late.look() is None
+        late_watcher = Watcher(display.data()[0])
+        late_watcher.look()
+        assert sorted(late_watcher.markers) == sorted(page.markers) == ["a/0", "a/1", "a/2"]
+        assert late_watcher.look() is None
 
 
 def test_page_receives_all_markers_after_missing_too_many_changes(monkeypatch):

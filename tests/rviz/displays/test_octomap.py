@@ -35,9 +35,9 @@ OCCUPIED, FREE, INNER = 2, 1, 3
 
 def octomap(last: list[int], frame: str = "base") -> Any:
     """Return a map of half a meter with the eight smallest cells at the center's corner, in the first octant."""
-    inner = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
+    nodes = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
     leaves = struct.pack("<H", sum(state << 2 * child for child, state in enumerate(last)))
-    message = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
+    message = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*nodes, leaves])))
     message.header.frame_id = frame
     return message
 

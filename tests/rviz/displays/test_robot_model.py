@@ -136,17 +136,17 @@ async def test_joint_checkbox_sets_links_below_and_follows_them():
             property_values = {path[1]: display.properties.get(*path) for path in paths}
             return {**property_values, "all": display.properties.get("Links", "All Links Enabled")}
 
-        on = dict.fromkeys(boxes(), True)
-        assert boxes() == on
+        all_enabled = dict.fromkeys(boxes(), True)
+        assert boxes() == all_enabled
         display.set_property(("Joints", "turn"), False)
-        assert boxes() == {**dict.fromkeys(on, False), "base": True}
+        assert boxes() == {**dict.fromkeys(all_enabled, False), "base": True}
         display.set_property(("Links", "mark"), True)
-        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+        assert boxes() == {**all_enabled, "tip": False, "turn": False, "all": False}
         display.set_property(("Links", "tip"), True)
-        assert boxes() == on
+        assert boxes() == all_enabled
         display.set_property(("Links", "Link Tree Style"), "Joints in Alphabetic Order")
         display.set_property(("Joints", "turn"), False)
-        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+        assert boxes() == {**all_enabled, "tip": False, "turn": False, "all": False}
 
 
 @pytest.mark.parametrize("box", ["Joints/turn", "Links/All Links Enabled", "Links/base"])
@@ -187,11 +187,11 @@ async def test_link_checkboxes_do_not_change_file_on_load():
 
 
 async def test_joint_and_mass_properties_come_from_description():
-    heavy = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    inertial_text = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     limited = '<axis xyz="0 0 1"/><origin xyz="0 0 1"/><limit lower="-1" upper="2" effort="1" velocity="1"/>'
     async with open_world(config()) as world:
         text = ARM.replace('type="continuous"', 'type="revolute"').replace('<axis xyz="0 0 1"/>', limited)
-        world.describe(text.replace('<link name="mark"/>', f'<link name="mark">{heavy}</link>'))
+        world.describe(text.replace('<link name="mark"/>', f'<link name="mark">{inertial_text}</link>'))
         await world.settle()
         scene = (await opened(world))["robot_scene"]
     turn, fix = scene["joints"]

@@ -51,7 +51,7 @@ async def test_statuses_are_sent_in_language_of_page():
         "zh": "没有收到消息：没有节点发布这个话题",
         "en": "No messages received: the topic has no publisher",
     }
-    wrong = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
+    texts_by_language = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
     async with open_world(config()) as world:
         for language, text in silent.items():
             async with page(world.viewer, f"&language={language}") as client:
@@ -63,7 +63,9 @@ async def test_statuses_are_sent_in_language_of_page():
             await other.set(f"{display['id']}/Topic", "")
             for client, language in ((chinese, "zh"), (other, "en")):
                 message = await client.until("display_status", display=display["id"], level="error")
-                assert [(row["name"], row["text"]) for row in message["status"]] == [("Topic", wrong[language])]
+                assert [(row["name"], row["text"]) for row in message["status"]] == [
+                    ("Topic", texts_by_language[language])
+                ]
 
 
 async def test_findings_are_sent_in_language_of_page():

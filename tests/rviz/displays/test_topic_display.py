@@ -184,8 +184,8 @@ async def test_qos_is_read_from_file():
         "        Value: /clicked_point\n", "        Durability Policy: Transient Local\n        Value: /p\n"
     )
     async with open_world(RvizConfig.parse(text)) as world:
-        lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/p", lasting)
+        transient_local = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/p", transient_local)
         publisher.publish(point(4.0))
         await world.settle()
         assert points(world) == [[4, 0, 0]]
@@ -240,11 +240,13 @@ async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch
         assert status() == "the topic has no publisher"
         node = world.graph.create_node("clicks")
         node.create_publisher(PointStamped, "/other", 5)
-        there = "the topic has no publisher, but geometry_msgs/msg/PointStamped is published on /other"
-        await eventually(lambda: status() == there, what=status)
+        expected_status = "the topic has no publisher, but geometry_msgs/msg/PointStamped is published on /other"
+        await eventually(lambda: status() == expected_status, what=status)
         for name in ("/a", "/b", "/clicked_points", "/c"):
             node.create_publisher(PointStamped, name, 5)
-        await eventually(lambda: status().startswith(there.replace("/other", "/clicked_points, ")), what=status)
+        await eventually(
+            lambda: status().startswith(expected_status.replace("/other", "/clicked_points, ")), what=status
+        )
         node.create_publisher(PointStamped, "/clicked_point", 5)
         await eventually(lambda: status() == "no message arrived yet from clicks", what=status)
 
@@ -281,10 +283,10 @@ async def test_stamps_of_another_clock_are_reported():
     ],
 )
 async def test_qos_mismatch_status_names_property_to_change(policy, remedy):
-    wanted = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
+    expected_changes = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
     async with open_world(config()) as world:
         display = world.display("PointStamped")
-        for row, value in wanted.items():
+        for row, value in expected_changes.items():
             if row.split()[0] in remedy:
                 display.set_property(("Topic", row), value)
         world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", policy)

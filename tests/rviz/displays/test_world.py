@@ -107,8 +107,8 @@ async def test_link_poses_follow_names_and_survive_new_description():
         await simulation.describe(WORLD)
         await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1), nobody__link=(9, 9, 9, 0, 0, 0, 1))
         assert positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0]]
-        more = WORLD.replace("</world>", '<model name="ball"><link name="link"/></model></world>')
-        await simulation.describe(more, links=4)
+        world_with_ball = WORLD.replace("</world>", '<model name="ball"><link name="link"/></model></world>')
+        await simulation.describe(world_with_ball, links=4)
         await eventually(lambda: len(positions(world)) == 4)
         assert positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0], [0, 0, 0]]
         assert sent(world, "world_poses").fields["revision"] == sent(world, "world_scene").fields["revision"] == 2
@@ -150,8 +150,8 @@ async def test_world_without_transforms_has_own_frame_and_no_warning():
         await opened.until("display_status", display="global", level="ok")
         assert world.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'")
         world.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
-        own = world.viewer.context.transforms.placed_frame
-        await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
+        world_frame = world.viewer.context.transforms.placed_frame
+        await eventually(lambda: (frame := world_frame("world")) is not None and frame.parent == "odom")
 
 
 async def test_tf_frames_are_placed_in_world_as_fixed_frame():
@@ -169,8 +169,8 @@ async def test_tf_frames_are_placed_in_world_as_fixed_frame():
         await eventually(lambda: transforms.placed_frame("world").parent == "odom")
         assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
         assert transforms.pose("world", "odom", 0) == pytest.approx([-2, 2, 0, 0, 0, 0, 1])
-        frame, known = transforms.in_known_frame("world", IDENTITY)
-        assert (frame, known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
+        frame, is_known = transforms.in_known_frame("world", IDENTITY)
+        assert (frame, is_known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
         await eventually(lambda: "base" in world.viewer.manager.frames.placed)
 
         world.move({("map", "world"): IDENTITY}, static=True)
@@ -370,12 +370,12 @@ async def test_lidar_scans_are_subscribed_while_rays_are_drawn():
         await simulation.describe(WORLD)
         assert subscribed_topics(world) == set()
         await simulation.describe(WORLD.replace("</world>", SEEING), links=4)
-        laser, spare = sent(world, "world_scene").fields["lidars"]
+        laser, idle_lidar = sent(world, "world_scene").fields["lidars"]
         assert (laser["name"], laser["link"], laser["visualized"]) == ("scout::head::laser", "scout::head", True)
         assert (laser["position"], laser["nearest"], laser["farthest"]) == ([0.1, 0.0, 0.0], 0.2, 20.0)
         assert (laser["vertical"]["count"], laser["vertical"]["step"]) == (16, pytest.approx(0.04))
         assert (laser["horizontal"]["count"], laser["horizontal"]["step"]) == (44, pytest.approx(0.046))
-        assert (spare["visualized"], spare["farthest"]) == (False, 30.0)
+        assert (idle_lidar["visualized"], idle_lidar["farthest"]) == (False, 30.0)
         assert subscribed_topics(world) == {"/world_rays"}
         rays = world.graph.create_node("rays").create_publisher(SCAN, "/world_rays", SENSOR_DATA_QOS)
         ranges = np.arange(32_000, dtype=np.float32)

@@ -74,13 +74,13 @@ async def test_fade_time_is_shortest_of_tf_displays():
     async with open_world(RvizConfig.parse(FRAMES)) as world:
         manager = world.viewer.manager
         stream, tree = manager._stream, manager.tree
-        group, grouped, alone = manager.displays
+        group, grouped, ungrouped = manager.displays
         assert stream.fade_time == 5
         tree.check(group, False)
         assert stream.fade_time == 8
-        alone.set_property(("Frame Timeout",), 3.0)
+        ungrouped.set_property(("Frame Timeout",), 3.0)
         assert stream.fade_time == 3
-        tree.remove([alone])
+        tree.remove([ungrouped])
         assert stream.fade_time is None
         manager.history.undo()
         assert stream.fade_time == 3
@@ -153,9 +153,9 @@ async def test_robot_model_is_added_by_description_topic():
         publisher.publish(String(data='<robot name="other"><link name="base"/></robot>'))
         await client.send("request_display_choices")
         topics = (await client.until("display_choices"))["topics"]
-        offered = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
+        topic_entry = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
         cls = "rviz_default_plugins/RobotModel"
-        assert cls in offered["classes"]
+        assert cls in topic_entry["classes"]
         await edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
         assert entries(world)[-1]["Description Topic"]["Value"] == "/other/robot_description"
         assert publisher.get_subscription_count() == 1

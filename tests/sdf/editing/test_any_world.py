@@ -77,10 +77,10 @@ def test_moved_entity_has_new_pose_and_others_stay(text, pose, name):
 
 @settings(max_examples=40)
 @given(worlds(), SIZES, st.booleans())
-def test_inverse_size_and_name_changes_restore_text(text, size, twice):
+def test_inverse_size_and_name_changes_restore_text(text, size, is_repeated):
     original = world_text(text)
     old = original.entities["a"].shape.size
-    names = ["a", "d"] if twice else ["a"]
+    names = ["a", "d"] if is_repeated else ["a"]
     changed = change(original, [Change(name, new_name=f"new {name}", size=size) for name in names])
     assert changed.entities["new a"].shape.size == size
     masses = [model.links[0].inertial for model in original.world.models]

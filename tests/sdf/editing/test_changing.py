@@ -135,13 +135,13 @@ def test_color_replaces_material_script():
 
 
 def test_static_flag_is_set_and_cleared():
-    still = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
-    assert still.entities["box"].is_static
-    assert not still.entities["ground_plane"].is_static
-    assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in still.text
-    bare = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
-    still = change(world_text(bare), [Change("box", static=True)])
-    moves = change(still, [Change("box", static=False, size=(1.0, 1.0, 1.0))])
+    static_text = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
+    assert static_text.entities["box"].is_static
+    assert not static_text.entities["ground_plane"].is_static
+    assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in static_text.text
+    plain_model = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
+    static_text = change(world_text(plain_model), [Change("box", static=True)])
+    moves = change(static_text, [Change("box", static=False, size=(1.0, 1.0, 1.0))])
     assert "<static>false</static>" in moves.text
     assert moves.world.models[0].links[0].inertial.inertia.ixx == pytest.approx(1 / 6, abs=1e-6)
     with pytest.raises(EditError, match="'lamp' is a light"):

@@ -171,8 +171,12 @@ async def test_wind_of_world_alone_lifts_wing():
 
 async def test_wings_of_one_link_add_up():
     """Descriptions of planes give both halves of a wing to one link, often with plugins of the same name."""
-    half = '<plugin name="wing" filename="gz-sim-lift-drag-system"><link_name>link</link_name><cla>5</cla><a0>0.1</a0>'
-    text = wing("<cla>5</cla><a0>0.1</a0><cp>0 1 0</cp>").replace("</model>", f"{half}<cp>0 -1 0</cp></plugin></model>")
+    wing_of_half_area = (
+        '<plugin name="wing" filename="gz-sim-lift-drag-system"><link_name>link</link_name><cla>5</cla><a0>0.1</a0>'
+    )
+    text = wing("<cla>5</cla><a0>0.1</a0><cp>0 1 0</cp>").replace(
+        "</model>", f"{wing_of_half_area}<cp>0 -1 0</cp></plugin></model>"
+    )
     force = await force_at(text, (20.0, 0.0, 0.0))
     assert force[2] == pytest.approx(2 * 0.5 * DENSITY * 400.0 * 0.5, rel=0.02)
     assert force[3] == pytest.approx(0.0, abs=1.0)

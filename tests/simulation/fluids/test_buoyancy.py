@@ -81,14 +81,14 @@ async def test_heave_has_period_of_mass_and_waterplane():
 
 async def test_flat_box_rights_itself_and_tall_box_capsizes():
     """The metacentric height of a box of half the density of water is b2 / (6 h) - h / 4."""
-    flat = floating("<box><size>1 1 0.4</size></box>", 0.4, "0 0 0 0.2 0 0")
+    flat_box = floating("<box><size>1 1 0.4</size></box>", 0.4, "0 0 0 0.2 0 0")
     tall = floating("<box><size>0.3 0.3 1</size></box>", 0.09, "0 0 0 0.2 0 0")
-    for body, is_stable in ((flat, True), (tall, False)):
+    for body, is_stable in ((flat_box, True), (tall, False)):
         async with running_server(water(), body) as (server, _, __):
             server.advance(20 * SECOND)
             simulation = server.simulation
-            up = simulation.data.xmat[simulation.body("float::link")].reshape(3, 3)[2, 2]
-            assert bool(up > 0.999) is is_stable, up
+            up_component = simulation.data.xmat[simulation.body("float::link")].reshape(3, 3)[2, 2]
+            assert bool(up_component > 0.999) is is_stable, up_component
 
 
 async def test_uniform_fluid_lifts_only_enabled_bodies():

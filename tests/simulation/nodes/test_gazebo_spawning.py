@@ -270,11 +270,11 @@ async def test_set_entity_pose_moves_model_and_exits(harness):
     simulator = Simulator(harness)
     arguments = ["--name", "ground", "--pos", "-1", "2", "3", "--euler", "0", "0", str(math.pi)]
     turned = SetEntityPose(harness.graph, NodeOptions(arguments=arguments))
-    plain = SetEntityPose(
+    set_pose = SetEntityPose(
         harness.graph, NodeOptions(arguments=["--name", "link", "--type", "2", "--quat", "1", "0", "0", "0"])
     )
     await harness.graph.settle()
-    assert (turned.finished.result(), plain.finished.result()) == (0, 1)
+    assert (turned.finished.result(), set_pose.finished.result()) == (0, 1)
     first, second = simulator.new_states
     position = first.pose.position
     assert (position.x, position.y, position.z) == (-1.0, 2.0, 3.0)

@@ -69,10 +69,10 @@ def test_depth_is_same_with_and_without_color(make_new):
     simulation = make_simulation(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
     renderer, optics, pose = make_new(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     depth_and_color = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
-    alone = renderer.render(optics, pose, Channels.DEPTH)
+    depth_only = renderer.render(optics, pose, Channels.DEPTH)
     repeated = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
-    assert (alone.depth == depth_and_color.depth).all()
-    assert alone.color is None
+    assert (depth_only.depth == depth_and_color.depth).all()
+    assert depth_only.color is None
     assert (repeated.color == depth_and_color.color).all()
 
 
@@ -204,11 +204,11 @@ def test_primitive_shapes_are_textured(make_new, tmp_path, shape, distance, orde
         return
     color = image.color.astype(int)
     corners = [tuple(color[row, column] > 40) for row in (50, 70) for column in (70, 90)]
-    known = [tuple(np.array(quarter) > 0) for quarter in QUARTERS]
-    assert set(corners) <= set(known)
+    expected_quarters = [tuple(np.array(quarter) > 0) for quarter in QUARTERS]
+    assert set(corners) <= set(expected_quarters)
     assert len(set(corners)) >= 2
     if order is not None:
-        assert corners == [known[index] for index in order]
+        assert corners == [expected_quarters[index] for index in order]
 
 
 def test_box_with_missing_texture_is_reported(tmp_path):
@@ -227,11 +227,11 @@ def test_positions_match_pinhole_model(make_new, point):
     rows, columns = np.nonzero(geoms >= 0)
     assert len(rows) > 10
     focal = 160 / (2 * tan(pi / 4))
-    near = x - 0.0005
-    assert columns.min() == pytest.approx(80 - focal * (y + size / 2) / near, abs=0.5 + 1e-6)
-    assert columns.max() + 1 == pytest.approx(80 - focal * (y - size / 2) / near, abs=0.5 + 1e-6)
-    assert rows.min() == pytest.approx(60 - focal * (z + size / 2) / near, abs=0.5 + 1e-6)
-    assert rows.max() + 1 == pytest.approx(60 - focal * (z - size / 2) / near, abs=0.5 + 1e-6)
+    before_edge = x - 0.0005
+    assert columns.min() == pytest.approx(80 - focal * (y + size / 2) / before_edge, abs=0.5 + 1e-6)
+    assert columns.max() + 1 == pytest.approx(80 - focal * (y - size / 2) / before_edge, abs=0.5 + 1e-6)
+    assert rows.min() == pytest.approx(60 - focal * (z + size / 2) / before_edge, abs=0.5 + 1e-6)
+    assert rows.max() + 1 == pytest.approx(60 - focal * (z - size / 2) / before_edge, abs=0.5 + 1e-6)
 
 
 def test_positions_match_lens_distortion_model(make_new):
@@ -240,9 +240,9 @@ def test_positions_match_lens_distortion_model(make_new):
     optics = optics_of(Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), distortion=LENS))
     geoms = make_new(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
-    (middle,) = optics.project(np.array([[-y, -z, x]]))
-    assert columns.mean() + 0.5 == pytest.approx(middle[0], abs=0.5)
-    assert rows.mean() + 0.5 == pytest.approx(middle[1], abs=0.5)
+    (pixel,) = optics.project(np.array([[-y, -z, x]]))
+    assert columns.mean() + 0.5 == pytest.approx(pixel[0], abs=0.5)
+    assert rows.mean() + 0.5 == pytest.approx(pixel[1], abs=0.5)
 
 
 def test_shapes_have_correct_extent(make_new):
@@ -331,17 +331,17 @@ def draw_with_opengl(request: pytest.FixtureRequest):
 @pytest.mark.parametrize("light", ["", '<light name="lamp" type="point"><pose>0 1 1 0 0 0</pose></light>'])
 def test_round_shapes_match_mujoco(draw_with_opengl, monkeypatch, light):
     simulation = make_simulation(ROUND, light)
-    our_image, our_count = draw_with_opengl(simulation)
+    linkwright_image, linkwright_count = draw_with_opengl(simulation)
     monkeypatch.setattr(opengl, "_BUILT_IN", 0)
     mujoco_image, mujoco_count = draw_with_opengl(simulation)
-    difference = np.abs(our_image.color.astype(int) - mujoco_image.color).max(axis=-1)
+    difference = np.abs(linkwright_image.color.astype(int) - mujoco_image.color).max(axis=-1)
     assert (mujoco_image.color != mujoco_image.color[0, 0]).any(axis=-1).mean() > 0.1
     assert (difference > 1).mean() < 1e-3
-    is_visible = np.isfinite(our_image.depth) & np.isfinite(mujoco_image.depth)
-    assert our_image.depth[is_visible] == pytest.approx(mujoco_image.depth[is_visible], abs=1e-3)
-    assert (np.isfinite(our_image.depth) != is_visible).sum() < 20
+    is_visible = np.isfinite(linkwright_image.depth) & np.isfinite(mujoco_image.depth)
+    assert linkwright_image.depth[is_visible] == pytest.approx(mujoco_image.depth[is_visible], abs=1e-3)
+    assert (np.isfinite(linkwright_image.depth) != is_visible).sum() < 20
     # MuJoCo draws quads, and Linkwright draws triangles.
-    assert our_count < mujoco_count if not light else our_count != mujoco_count
+    assert linkwright_count < mujoco_count if not light else linkwright_count != mujoco_count
 
 
 def test_point_light_lights_nearby_objects(make_new):

@@ -190,8 +190,8 @@ def test_antiwindup_selects_the_strategy(value, strategy):
 @pytest.mark.parametrize(("legacy", "node"), [("", "/gazebo_ros_control"), ("false", "/r1/gazebo_ros_control")])
 async def test_gains_are_in_the_root_namespace_unless_legacy_mode_is_off(file, legacy, node):
     mode = f"<legacyModeNS>{legacy}</legacyModeNS>" if legacy else ""
-    for given, has_pid in ((node, True), ("/r2/gazebo_ros_control", False)):
-        extra = file("position", "p: 60.0, d: 6.0", given) + f"<robotNamespace>/r1</robotNamespace>{mode}"
+    for node_name, has_pid in ((node, True), ("/r2/gazebo_ros_control", False)):
+        extra = file("position", "p: 60.0, d: 6.0", node_name) + f"<robotNamespace>/r1</robotNamespace>{mode}"
         async with arm(urdf("position", extra), "/r1/robot_description") as (world, _):
             world.manager = "/r1/controller_manager"
             await world.start_controllers()

@@ -268,8 +268,12 @@ async def test_respawned_robot_has_no_controllers(file):
 
 
 async def test_vendor_copy_of_plugin_is_reported_once(file):
-    two = robot_with_plugin(file, "copy", "<controller_manager_name>other</controller_manager_name>")
-    async with running_server(GROUND, robot_with_plugin(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
+    description_with_two_plugins = robot_with_plugin(
+        file, "copy", "<controller_manager_name>other</controller_manager_name>"
+    )
+    async with running_server(
+        GROUND, robot_with_plugin(file, "copy"), description_with_two_plugins.replace('"mbot"', '"two"')
+    ) as (_, __, log):
         logged = [record.text for record in log if "is simulated as" in record.text]
     assert logged == [
         (

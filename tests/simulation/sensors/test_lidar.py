@@ -23,9 +23,9 @@ def lidar_sensor(simulation: Simulation, element, *, visuals: bool = False, seed
 def distance_in_room(angle: float) -> float:
     """Return the distance from the origin to the walls of `room` in a direction."""
     x, y = cos(angle), sin(angle)
-    across = 3 / x if x > 0 else -2 / x if x < 0 else float("inf")
-    along = 4 / y if y > 0 else -5 / y if y < 0 else float("inf")
-    return min(across, along)
+    distance_along_x = 3 / x if x > 0 else -2 / x if x < 0 else float("inf")
+    distance_along_y = 4 / y if y > 0 else -5 / y if y < 0 else float("inf")
+    return min(distance_along_x, distance_along_y)
 
 
 @pytest.mark.parametrize("visuals", [False, True])
@@ -54,7 +54,7 @@ def test_vertical_rings_are_angled_up_and_down():
 
 def test_out_of_range_values_are_infinite_as_in_rep_117():
     world = block("far", "9 0 0 0 0 0", "1 1 1"), block("near", "0 0.55 0 0 0 0", "1 1 1")
-    scan = lidar_sensor(make_simulation(*world, carrier()), single_row_lidar(3, 0.0, pi, far=8.0)).measure()
+    scan = lidar_sensor(make_simulation(*world, carrier()), single_row_lidar(3, 0.0, pi, max_range=8.0)).measure()
     assert list(scan.ranges[0]) == [np.inf, -np.inf, np.inf]
 
 
@@ -83,12 +83,12 @@ ROBOT = """
 </model>"""
 
 
-@pytest.mark.parametrize(("near", "expected"), [(0.1, 0.3), (0.35, 3.0)])
-def test_lidar_sees_its_robot_but_not_its_own_link(near: float, expected: float):
+@pytest.mark.parametrize(("min_range", "expected"), [(0.1, 0.3), (0.35, 3.0)])
+def test_lidar_sees_its_robot_but_not_its_own_link(min_range: float, expected: float):
     simulation = make_simulation(room(), ROBOT)
     sensor = LidarSensor(
         Mount(simulation, "robot::laser"),
-        single_row_lidar(1, 0, 0, near=near),
+        single_row_lidar(1, 0, 0, min_range=min_range),
         sees_visuals=False,
         generator=np.random.default_rng(0),
     )
@@ -97,13 +97,13 @@ def test_lidar_sees_its_robot_but_not_its_own_link(near: float, expected: float)
 
 def test_noise_depends_on_seed_and_stays_in_range():
     simulation = make_simulation(room(), carrier())
-    parameters = single_row_lidar(2000, -1.0, 1.0, GAUSSIAN, far=3.4)
+    parameters = single_row_lidar(2000, -1.0, 1.0, GAUSSIAN, max_range=3.4)
     first, repeated, second = (
         lidar_sensor(simulation, parameters, seed=seed).measure().ranges[0] for seed in (1, 1, 2)
     )
     assert (first == repeated).all()
     assert not (first == second).all()
-    exact = lidar_sensor(simulation, single_row_lidar(2000, -1.0, 1.0, far=3.4)).measure().ranges[0]
+    exact = lidar_sensor(simulation, single_row_lidar(2000, -1.0, 1.0, max_range=3.4)).measure().ranges[0]
     finite = np.isfinite(exact)
     assert (np.isfinite(first) == finite).all()
     assert first[finite].max() <= 3.4

@@ -287,9 +287,9 @@ async def test_gz_contacts_are_published_while_touching():
         assert (contact.collision1.name, contact.collision1.type) == ("crate::link::collision", 5)
         assert contact.collision2.name == "ground::link::collision"
         assert len(contact.wrenches) == len(contact.depths) == len(contact.positions) == len(contact.normals)
-        up = sum(wrench.body_1_wrench.force.z for wrench in contact.wrenches)
-        assert up == pytest.approx(2.0 * 9.81, rel=0.02)
-        assert sum(wrench.body_2_wrench.force.z for wrench in contact.wrenches) == pytest.approx(-up)
+        upward_force = sum(wrench.body_1_wrench.force.z for wrench in contact.wrenches)
+        assert upward_force == pytest.approx(2.0 * 9.81, rel=0.02)
+        assert sum(wrench.body_2_wrench.force.z for wrench in contact.wrenches) == pytest.approx(-upward_force)
         assert not log
 
 
@@ -415,8 +415,8 @@ async def test_image_format_sets_encoding(image_format: str, encoding: str, step
 @pytest.mark.parametrize("library", ["libgazebo_ros_camera.so", "libgazebo_ros_openni_kinect.so"])
 async def test_depth_camera_measures_along_optical_axis(library: str):
     element = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
-    near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
-    async with running_server(WALL, near, robot_with(sensor("depth", CAMERA + element))) as (server, graph, _):
+    near_block = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
+    async with running_server(WALL, near_block, robot_with(sensor("depth", CAMERA + element))) as (server, graph, _):
         depth, cloud = await last_messages(server, graph, "/depth/depth/image_raw", "/depth/points")
         meters = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
         assert (depth.encoding, depth.step) == ("32FC1", 256)

@@ -55,7 +55,7 @@ def sound(level, seconds=0.5):
 
 
 def results_of(engine, samples):
-    return [result for at in range(0, len(samples), 1_600) for result in engine.hear(samples[at : at + 1_600])]
+    return [result for start in range(0, len(samples), 1_600) for result in engine.hear(samples[start : start + 1_600])]
 
 
 def rejection(path):

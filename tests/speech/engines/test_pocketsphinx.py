@@ -117,7 +117,7 @@ def test_utterance_is_recognized_in_blocks_of_any_length(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go to the kitchen", "Stop")))
     assert "public <said> = go to the kitchen | stop;" in Decoder.decoders[0].grammar
     sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
-    results = [result for at in range(0, len(sound), 700) for result in engine.hear(sound[at : at + 700])]
+    results = [result for start in range(0, len(sound), 700) for result in engine.hear(sound[start : start + 700])]
     assert [(result.text, result.final) for result in results] == [
         ("go to the kitchen", False),
         ("go to the kitchen", True),
@@ -161,8 +161,8 @@ def test_silence_and_noise_are_not_recognized_by_real_library():
 def test_finish_at_frame_end_works_with_real_library():
     engine = PocketsphinxEngine(EngineOptions(("forward", "stop")))
     sound = say(WORDS["forward"], silence=0.6)
-    loud = 480 * (int(np.flatnonzero(np.abs(sound.astype(int)) > 500)[-1]) // 480)
-    list(engine.hear(sound[:loud]))
+    speech_end = 480 * (int(np.flatnonzero(np.abs(sound.astype(int)) > 500)[-1]) // 480)
+    list(engine.hear(sound[:speech_end]))
     (result,) = engine.finish()
     assert result.final
     assert 0.0 <= result.confidence <= 1.0

@@ -9,7 +9,7 @@ from tests.speech.nodes.fakes import ENTRY, CommanderHarness, ScriptedEngine
 
 
 @pytest.fixture
-async def talk(harness):  # noqa: F811
+async def start_commander(harness):  # noqa: F811
     """Return a function that starts a voice_commander, which ends with the test."""
     harnesses = []
 

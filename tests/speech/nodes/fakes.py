@@ -75,7 +75,9 @@ class CommanderHarness:
         node.create_subscription(TWIST, "/cmd_vel", self.velocities.append, 100)
         for name in ("text", "partial_text", "command", "response"):
             texts = self.texts_by_topic[name] = []
-            node.create_subscription(STRING, f"/voice/{name}", lambda message, to=texts: to.append(message.data), 100)
+            node.create_subscription(
+                STRING, f"/voice/{name}", lambda message, target=texts: target.append(message.data), 100
+            )
         self.text = node.create_publisher(STRING, "/voice/text_input", 10)
         self.button = node.create_publisher(BOOL, "/voice/listen", 10)
         self.microphone_node = harness.graph.create_node("mouth")

@@ -18,8 +18,8 @@ from tests.waiting import eventually
         ("zh", "左转", "我听到了声音，但不是任何命令，最接近的是“左转”"),
     ],
 )
-async def test_unknown_speech_during_press_is_answered_once(engine, talk, language, nearest, answer):
-    robot = talk(engine="told", language=language)
+async def test_unknown_speech_during_press_is_answered_once(engine, start_commander, language, nearest, answer):
+    robot = start_commander(engine="told", language=language)
     await robot.hold(True)
     await robot.process(final(""), final("forward", 0.2))
     engine.results_at_end.append(final("", nearest=nearest))
@@ -31,8 +31,8 @@ async def test_unknown_speech_during_press_is_answered_once(engine, talk, langua
 
 @pytest.mark.parametrize("heard", [final("forward"), final("forward", 0.4), partial("stop"), final("stop", 0.1)])
 @pytest.mark.parametrize("is_first", [True, False])
-async def test_answered_press_does_not_report_unknown_speech(engine, talk, heard, is_first):
-    robot = talk(engine="told")
+async def test_answered_press_does_not_report_unknown_speech(engine, start_commander, heard, is_first):
+    robot = start_commander(engine="told")
     await robot.hold(True)
     await robot.process(*((heard, final("")) if is_first else (final(""), heard)))
     responses = list(robot.texts_by_topic["response"])
@@ -43,8 +43,8 @@ async def test_answered_press_does_not_report_unknown_speech(engine, talk, heard
     assert robot.texts_by_topic["response"] == responses
 
 
-async def test_press_with_gap_asks_to_repeat(engine, talk):
-    robot = talk(engine="told")
+async def test_press_with_gap_asks_to_repeat(engine, start_commander):
+    robot = start_commander(engine="told")
     await robot.hold(True)
     for index in range(5):
         await robot.process(stamp=10.0 + 0.1 * index)
@@ -55,8 +55,8 @@ async def test_press_with_gap_asks_to_repeat(engine, talk):
     assert robot.texts_by_topic["response"] == ["I did not hear all of that, please repeat"]
 
 
-async def test_presses_are_answered_separately_by_slow_engine(engine, talk):
-    robot = talk(engine="told")
+async def test_presses_are_answered_separately_by_slow_engine(engine, start_commander):
+    robot = start_commander(engine="told")
     engine.results_at_end.append(final(""))
     for held in (True, False, True, False):
         await robot.hold(held)
@@ -70,8 +70,8 @@ async def test_presses_are_answered_separately_by_slow_engine(engine, talk):
     assert len(robot.texts_by_topic["response"]) == 2
 
 
-async def test_open_listening_does_not_report_unknown_speech(engine, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_open_listening_does_not_report_unknown_speech(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final(""))
     await robot.hold(True)
     await robot.process(final(""))
@@ -121,13 +121,15 @@ def test_proposal_lasts_until_next_press_or_command():
     [({}, [True, False]), ({"words_file": "/words.json"}, []), ({"open_listening": True}, [])],
     ids=["usual file", "a file that pages do not write", "listens to all"],
 )
-async def test_enrolling_proposal_is_published_and_withdrawn(engine, talk, harness, monkeypatch, parameters, proposed):
+async def test_enrolling_proposal_is_published_and_withdrawn(
+    engine, start_commander, harness, monkeypatch, parameters, proposed
+):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"enrolled": ENTRY})
     messages = []
     harness.node.create_subscription(
         BOOL, "/voice/propose_enrolling", lambda message: messages.append(message.data), 10
     )
-    robot = talk(engine="enrolled", **parameters)
+    robot = start_commander(engine="enrolled", **parameters)
     engine.results_at_end.append(final(""))
     for _ in range(3):
         await robot.hold(True)

@@ -31,17 +31,17 @@ def words_file(tmp_path_factory):
 
 @pytest.fixture
 async def robot(harness, words_file):
-    talk = CommanderHarness(harness, engine="enrolled", words_file=str(words_file), open_listening=True)
-    yield talk
-    talk.commander.close()
+    commander_harness = CommanderHarness(harness, engine="enrolled", words_file=str(words_file), open_listening=True)
+    yield commander_harness
+    commander_harness.commander.close()
     await harness.graph.settle()
 
 
 async def play(robot, samples):
     """Publish sound in blocks of 100 ms, as a microphone does."""
-    for at in range(0, len(samples), BLOCK):
+    for start in range(0, len(samples), BLOCK):
         robot.sound.publish(
-            audio_stamped(samples[at : at + BLOCK].tobytes(), robot.harness.node.get_clock().now().to_msg())
+            audio_stamped(samples[start : start + BLOCK].tobytes(), robot.harness.node.get_clock().now().to_msg())
         )
         await robot.harness.graph.settle()
 

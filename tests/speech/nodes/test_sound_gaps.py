@@ -14,7 +14,7 @@ LENGTH = SECOND // 10
 def stamps_of(arrivals):
     """Return the stamps of blocks of a tenth of a second that arrived at these seconds."""
     stamps = SampleStamps()
-    return [stamps.stamp(BLOCK, round(at * SECOND)) for at in arrivals]
+    return [stamps.stamp(BLOCK, round(arrival * SECOND)) for arrival in arrivals]
 
 
 def gaps_of(stamps):

@@ -37,8 +37,8 @@ def commands(tmp_path, text):
         ("turn right", (0.0, 0.0, -0.6)),
     ],
 )
-async def test_command_drives_robot(harness, talk, text, speed):
-    robot = talk()
+async def test_command_drives_robot(harness, start_commander, text, speed):
+    robot = start_commander()
     assert await robot.send_text(text) == text
     assert robot.speed == speed
     await harness.clock.advance(1.0)
@@ -47,8 +47,8 @@ async def test_command_drives_robot(harness, talk, text, speed):
     assert robot.texts_by_topic["text"] == [text]
 
 
-async def test_new_command_replaces_previous_and_stop_ends_it(harness, talk):
-    robot = talk()
+async def test_new_command_replaces_previous_and_stop_ends_it(harness, start_commander):
+    robot = start_commander()
     await robot.send_text("forward")
     await robot.send_text("left")
     assert robot.speed == (0.0, 0.0, 0.6)
@@ -60,8 +60,8 @@ async def test_new_command_replaces_previous_and_stop_ends_it(harness, talk):
     assert robot.texts_by_topic["command"] == ["forward", "left", "stop"]
 
 
-async def test_silence_timeout_stops_robot(harness, talk):
-    robot = talk(silence_timeout=3.0)
+async def test_silence_timeout_stops_robot(harness, start_commander):
+    robot = start_commander(silence_timeout=3.0)
     await robot.send_text("forward")
     await harness.clock.advance(2.9)
     assert robot.speed == (0.2, 0.0, 0.0)
@@ -86,8 +86,8 @@ def travelled_distance(robot):
         ("转两圈", 0.0, 4 * pi),
     ],
 )
-async def test_distance_without_odometry_is_speed_times_time(harness, talk, text, distance, angle):
-    robot = talk()
+async def test_distance_without_odometry_is_speed_times_time(harness, start_commander, text, distance, angle):
+    robot = start_commander()
     await robot.send_text(text)
     await harness.clock.advance(40.0)
     assert robot.speed == (0.0, 0.0, 0.0)
@@ -110,8 +110,8 @@ class SlippingRobot:
         self.publisher.publish(message)
 
 
-async def test_distance_is_measured_by_odometry(harness, talk):
-    robot = talk()
+async def test_distance_is_measured_by_odometry(harness, start_commander):
+    robot = start_commander()
     body = SlippingRobot(harness, robot)
     await harness.clock.advance(0.1)
     await robot.send_text("前进一点五米")
@@ -120,8 +120,8 @@ async def test_distance_is_measured_by_odometry(harness, talk):
     assert body.x == pytest.approx(1.5, abs=0.02)
 
 
-async def test_stuck_robot_stops_and_reports(harness, talk):
-    robot = talk()
+async def test_stuck_robot_stops_and_reports(harness, start_commander):
+    robot = start_commander()
     SlippingRobot(harness, robot, share=0.0)
     await harness.clock.advance(0.1)
     await robot.send_text("forward one meter")
@@ -130,8 +130,8 @@ async def test_stuck_robot_stops_and_reports(harness, talk):
     assert robot.texts_by_topic["response"][-1] == "I am stuck, so I am stopping"
 
 
-async def test_speed_commands_change_speed(talk):
-    robot = talk()
+async def test_speed_commands_change_speed(start_commander):
+    robot = start_commander()
     await robot.send_text("加速")
     await robot.send_text("forward")
     assert robot.speed[0] == pytest.approx(0.25)
@@ -147,8 +147,8 @@ async def test_speed_commands_change_speed(talk):
     assert robot.speed[0] == pytest.approx(0.8), "the speed is limited to four times the default"
 
 
-async def test_closing_node_stops_robot(harness, talk):
-    robot = talk()
+async def test_closing_node_stops_robot(harness, start_commander):
+    robot = start_commander()
     await robot.send_text("forward")
     robot.commander.close()
     await harness.graph.settle()
@@ -158,8 +158,8 @@ async def test_closing_node_stops_robot(harness, talk):
 # --- sound -----------------------------------------------------------------------------------------------------------
 
 
-async def test_engine_gets_phrases_and_options(engine, talk, tmp_path):
-    robot = talk(engine="told", language="zh", words_file="/words.json", model=str(tmp_path))
+async def test_engine_gets_phrases_and_options(engine, start_commander, tmp_path):
+    robot = start_commander(engine="told", language="zh", words_file="/words.json", model=str(tmp_path))
     await eventually(lambda: engine.used_options)
     (options,) = engine.used_options
     assert (options.language, options.model) == ("zh", tmp_path)
@@ -167,8 +167,8 @@ async def test_engine_gets_phrases_and_options(engine, talk, tmp_path):
     assert robot.texts_by_topic["text"] == []
 
 
-async def test_sound_is_used_only_while_button_is_held(engine, talk):
-    robot = talk(engine="told")
+async def test_sound_is_used_only_while_button_is_held(engine, start_commander):
+    robot = start_commander(engine="told")
     await robot.process()
     await robot.hold(True)
     await robot.process(partial("for"), final("forward"))
@@ -179,14 +179,14 @@ async def test_sound_is_used_only_while_button_is_held(engine, talk):
     await eventually(lambda: engine.finished)
 
 
-async def test_open_listening_needs_no_button(engine, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_open_listening_needs_no_button(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final("forward"))
     assert robot.texts_by_topic["command"] == ["forward"]
 
 
-async def test_uncertain_command_is_not_executed(engine, talk):
-    robot = talk(engine="told", open_listening=True, confidence=0.7)
+async def test_uncertain_command_is_not_executed(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True, confidence=0.7)
     await robot.process(final("forward", 0.6))
     await robot.process(final("", 0.9))
     assert robot.texts_by_topic["command"] == []
@@ -194,8 +194,8 @@ async def test_uncertain_command_is_not_executed(engine, talk):
 
 
 @pytest.mark.parametrize("asked_for", [0.5, 0.8])
-async def test_uncertain_command_during_press_is_answered(engine, talk, asked_for):
-    robot = talk(engine="told", confidence=asked_for, language="zh")
+async def test_uncertain_command_during_press_is_answered(engine, start_commander, asked_for):
+    robot = start_commander(engine="told", confidence=asked_for, language="zh")
     await robot.hold(True)
     engine.results_at_end.append(final("前进", 0.6 * asked_for))
     await robot.hold(False)
@@ -205,15 +205,15 @@ async def test_uncertain_command_during_press_is_answered(engine, talk, asked_fo
     assert robot.texts_by_topic["command"] == []
 
 
-async def test_very_uncertain_result_is_not_answered(engine, talk):
-    robot = talk(engine="told")
+async def test_very_uncertain_result_is_not_answered(engine, start_commander):
+    robot = start_commander(engine="told")
     await robot.hold(True)
     await robot.process(final("forward", 0.2), final("", 0.4))
     assert robot.texts_by_topic["response"] == []
 
 
-async def test_open_listening_answers_uncertain_command_only_with_button(engine, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_open_listening_answers_uncertain_command_only_with_button(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final("forward", 0.4))
     assert robot.texts_by_topic["response"] == []
     await robot.hold(True)
@@ -221,8 +221,8 @@ async def test_open_listening_answers_uncertain_command_only_with_button(engine,
     assert robot.texts_by_topic["response"] == ["I am not sure that I heard 'forward', please repeat"]
 
 
-async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, talk):
-    robot = talk(engine="told")
+async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, start_commander):
+    robot = start_commander(engine="told")
     await robot.hold(True)
     for index in range(5):
         await robot.process(stamp=10.0 + 0.1 * index)
@@ -239,8 +239,8 @@ async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, talk
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_certain_command_with_small_gap_is_executed(engine, talk):
-    robot = talk(engine="told")
+async def test_certain_command_with_small_gap_is_executed(engine, start_commander):
+    robot = start_commander(engine="told")
     await robot.hold(True)
     for index in range(5):
         await robot.process(stamp=10.0 + 0.1 * index)
@@ -249,8 +249,8 @@ async def test_certain_command_with_small_gap_is_executed(engine, talk):
     assert robot.texts_by_topic["response"][-1] == "I did not hear all of that, please repeat"
 
 
-async def test_next_press_has_no_gap(engine, talk):
-    robot = talk(engine="told")
+async def test_next_press_has_no_gap(engine, start_commander):
+    robot = start_commander(engine="told")
     await robot.hold(True)
     for index in range(5):
         await robot.process(stamp=10.0 + 0.1 * index)
@@ -260,8 +260,8 @@ async def test_next_press_has_no_gap(engine, talk):
     assert robot.texts_by_topic["command"] == ["forward"]
 
 
-async def test_partial_stop_is_executed_once(engine, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_partial_stop_is_executed_once(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final("forward"))
     await robot.process(partial("[unk] stop", start=2.0))
     assert robot.speed == (0.0, 0.0, 0.0)
@@ -269,16 +269,16 @@ async def test_partial_stop_is_executed_once(engine, talk):
     assert robot.texts_by_topic["command"] == ["forward", "stop"]
 
 
-async def test_stop_is_executed_again_after_new_motion(engine, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_stop_is_executed_again_after_new_motion(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     for _ in range(2):
         await robot.send_text("forward")
         await robot.process(partial("stop"))
         assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_rest_of_utterance_after_stop_is_ignored(engine, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_rest_of_utterance_after_stop_is_ignored(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final("left"))
     await robot.process(partial("stop"), final("forward"))
     assert robot.texts_by_topic["command"] == ["left", "stop"]
@@ -287,16 +287,16 @@ async def test_rest_of_utterance_after_stop_is_ignored(engine, talk):
     assert robot.texts_by_topic["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
 
 
-async def test_engine_problem_is_logged(engine, talk, logged):
+async def test_engine_problem_is_logged(engine, start_commander, logged):
     engine.problems.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enroll something")))
-    robot = talk(engine="told")
+    robot = start_commander(engine="told")
     await eventually(lambda: logged("WARN"))
     assert logged("WARN") == ["nothing is enrolled", "enroll something"]
     assert not robot.commander.finished.done()
 
 
-async def test_uncertain_stop_stops_moving_robot(engine, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_uncertain_stop_stops_moving_robot(engine, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final("stop", 0.1))
     assert robot.texts_by_topic["command"] == []
     await robot.process(final("forward", start=2.0))
@@ -304,8 +304,8 @@ async def test_uncertain_stop_stops_moving_robot(engine, talk):
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
-async def test_lost_audio_source_stops_robot(engine, harness, talk):
-    robot = talk(engine="told", open_listening=True)
+async def test_lost_audio_source_stops_robot(engine, harness, start_commander):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final("forward"))
     robot.microphone_node.destroy_node()
     await harness.clock.advance(1.0)
@@ -313,15 +313,15 @@ async def test_lost_audio_source_stops_robot(engine, harness, talk):
     assert robot.texts_by_topic["response"][-1] == "the audio source is gone, so I am stopping"
 
 
-async def test_unknown_engine_ends_node(engine, talk, logged):
-    robot = talk(engine="tolt")
+async def test_unknown_engine_ends_node(engine, start_commander, logged):
+    robot = start_commander(engine="tolt")
     await eventually(robot.commander.finished.done)
     assert robot.commander.finished.result() == 1
     assert logged("FATAL") == ["there is no speech engine 'tolt'", "did you mean 'told'?"]
 
 
-async def test_failing_engine_stops_robot_and_ends_node(engine, talk, logged):
-    robot = talk(engine="told", open_listening=True)
+async def test_failing_engine_stops_robot_and_ends_node(engine, start_commander, logged):
+    robot = start_commander(engine="told", open_listening=True)
     await robot.process(final("forward"))
     robot.sound.publish(audio_stamped(b"\xff\x7f", robot.harness.node.get_clock().now().to_msg()))
     await eventually(robot.commander.finished.done)
@@ -343,8 +343,8 @@ commands:
 
 
 @pytest.mark.parametrize(("answer", "count"), [("yes", 1), ("no", 0), ("forward", 0), (None, 0)])
-async def test_confirmation_is_required_before_command(harness, talk, tmp_path, answer, count):
-    robot = talk(commands_file=commands(tmp_path, QUESTION))
+async def test_confirmation_is_required_before_command(harness, start_commander, tmp_path, answer, count):
+    robot = start_commander(commands_file=commands(tmp_path, QUESTION))
     reset = []
     harness.node.create_subscription(STRING, "/reset", reset.append, 10)
     assert await robot.send_text("reset") == "are you sure?"
@@ -358,18 +358,18 @@ async def test_confirmation_is_required_before_command(harness, talk, tmp_path, 
     assert len(reset) == count
 
 
-async def test_first_response_is_in_node_language(talk):
-    robot = talk(language="zh")
+async def test_first_response_is_in_node_language(start_commander):
+    robot = start_commander(language="zh")
     assert await robot.send_text("唱歌") == "我没听懂“唱歌”"
 
 
-async def test_response_is_in_language_of_last_command(talk, tmp_path):
+async def test_response_is_in_language_of_last_command(start_commander, tmp_path):
     text = """
 commands:
   stop: {phrases: {en: stop, zh: 停}, stop: true, response: {en: stopped, zh: 停下了}}
   forward: {phrases: {en: [forward], zh: [前进]}, drive: {x: 1}, response: {en: I drive, zh: 我走}}
 """
-    robot = talk(commands_file=commands(tmp_path, text))
+    robot = start_commander(commands_file=commands(tmp_path, text))
     assert await robot.send_text("前进") == "我走"
     assert await robot.send_text("sing") == "我没听懂“sing”"
     assert await robot.send_text("停") == "停下了"
@@ -411,9 +411,9 @@ class Navigator:
         return CancelResponse.ACCEPT
 
 
-async def test_go_to_place_sends_goal_and_reports_arrival(harness, talk, tmp_path):
+async def test_go_to_place_sends_goal_and_reports_arrival(harness, start_commander, tmp_path):
     navigator = Navigator(harness)
-    robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
+    robot = start_commander(commands_file=commands(tmp_path, PLACE_FILE))
     await harness.graph.settle()
     assert await robot.send_text("去厨房") == "去厨房"
     (goal,) = navigator.goals
@@ -427,28 +427,28 @@ async def test_go_to_place_sends_goal_and_reports_arrival(harness, talk, tmp_pat
 
 
 @pytest.mark.parametrize("text", ["stop", "forward"])
-async def test_stop_or_other_command_cancels_goal(harness, talk, tmp_path, text):
+async def test_stop_or_other_command_cancels_goal(harness, start_commander, tmp_path, text):
     navigator = Navigator(harness)
-    robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
+    robot = start_commander(commands_file=commands(tmp_path, PLACE_FILE))
     await harness.graph.settle()
     await robot.send_text("go to the kitchen")
     await robot.send_text(text)
     assert navigator.cancel_count >= 1
 
 
-async def test_missing_action_server_is_reported(talk, tmp_path):
-    robot = talk(commands_file=commands(tmp_path, PLACE_FILE))
+async def test_missing_action_server_is_reported(start_commander, tmp_path):
+    robot = start_commander(commands_file=commands(tmp_path, PLACE_FILE))
     assert await robot.send_text("go to the kitchen") == "I cannot do it: no node serves 'navigate_to_pose'"
 
 
-async def test_service_response_is_spoken(harness, talk):
+async def test_service_response_is_spoken(harness, start_commander):
     service_type = get_service("std_srvs/srv/Trigger")
     harness.node.create_service(
         service_type,
         "/vision/describe/en",
         lambda request, response: service_type.Response(success=True, message="a red ball"),
     )
-    robot = talk()
+    robot = start_commander()
     await harness.graph.settle()
     await robot.send_text("what do you see")
     await eventually(lambda: robot.texts_by_topic["response"][-1] == "a red ball")
@@ -458,8 +458,8 @@ def clients(harness):
     return [endpoint.name for endpoint in harness.graph.endpoints() if endpoint.kind is EndpointKind.CLIENT]
 
 
-async def test_missing_service_does_not_delay_other_commands(harness, talk):
-    robot = talk()
+async def test_missing_service_does_not_delay_other_commands(harness, start_commander):
+    robot = start_commander()
     await harness.graph.settle()
     assert [client for client in clients(harness) if "/_action/" not in client] == []
     assert await robot.send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
@@ -474,9 +474,11 @@ async def test_missing_service_does_not_delay_other_commands(harness, talk):
     assert "/vision/describe/en" not in clients(harness)
 
 
-async def test_service_of_other_type_is_not_called(harness, talk):
+async def test_service_of_other_type_is_not_called(harness, start_commander):
     harness.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
-    assert await talk().send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
+    assert (
+        await start_commander().send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
+    )
 
 
 LAUNCH = """
@@ -510,10 +512,10 @@ class FakeProcess:
         self.signals.append(15)
 
 
-async def test_launch_file_is_started_without_shell_and_ended_by_stop(talk, tmp_path, monkeypatch):
+async def test_launch_file_is_started_without_shell_and_ended_by_stop(start_commander, tmp_path, monkeypatch):
     FakeProcess.started.clear()
     monkeypatch.setattr("linkwright.speech.nodes.requests.subprocess.Popen", FakeProcess)
-    robot = talk(commands_file=commands(tmp_path, LAUNCH))
+    robot = start_commander(commands_file=commands(tmp_path, LAUNCH))
     await robot.send_text("follow the red ball")
     (process,) = FakeProcess.started
     assert process.command[-6:] == ["linkwright", "launch", "p", "f.launch.py", "target:=red ball", "k:=2"]
@@ -522,14 +524,14 @@ async def test_launch_file_is_started_without_shell_and_ended_by_stop(talk, tmp_
     assert len(process.signals) == 1
 
 
-async def test_go_to_object_publishes_target_and_stop(harness, talk):
+async def test_go_to_object_publishes_target_and_stop(harness, start_commander):
     targets = []
     harness.node.create_subscription(STRING, "/vision/go_to/en", lambda message: targets.append(message.data), 10)
     harness.node.create_subscription(
         STRING, "/vision/go_to/zh", lambda message: targets.append(("zh", message.data)), 10
     )
     harness.node.create_subscription("std_msgs/msg/Empty", "/vision/stop", lambda message: targets.append("stop"), 10)
-    robot = talk()
+    robot = start_commander()
     await robot.send_text("forward")
     await robot.send_text("go to the red ball")
     assert robot.speed == (0.0, 0.0, 0.0)
@@ -538,8 +540,8 @@ async def test_go_to_object_publishes_target_and_stop(harness, talk):
     assert targets == ["stop", "red ball", "stop", ("zh", "red ball")]
 
 
-async def test_invalid_command_file_ends_node(talk, tmp_path, logged):
+async def test_invalid_command_file_ends_node(start_commander, tmp_path, logged):
     with pytest.raises(LinkwrightError) as error:
-        talk(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
+        start_commander(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
     assert error.value.diagnostics[0].code == "VOICE302"
     assert logged("FATAL") == ["the command 'a' has no action"]

@@ -30,14 +30,14 @@ def source(tmp_path):
 
 
 def make(source, path, images, **options):
-    given = {
+    parameters = {
         "options": source.options,
         "models": source.added_models,
         "classes": source.classes,
         "workers": 1,
         **options,
     }
-    return make_dataset(source.worlds, path, images, **given)
+    return make_dataset(source.worlds, path, images, **parameters)
 
 
 def test_dataset_requires_only_world_and_folder(tmp_path):
@@ -107,13 +107,13 @@ def test_all_label_formats_agree(source, tmp_path):
             with Image.open(folder / "images" / split / image["file_name"]) as opened:
                 assert opened.size == (160, 120) == (image["width"], image["height"])
             lines = (folder / "labels" / split / f"{Path(image['file_name']).stem}.txt").read_text().splitlines()
-            known = [
+            expected_labels = [
                 annotation
                 for annotation in text["annotations"]
                 if annotation["image_id"] == image["id"] and not annotation["iscrowd"]
             ]
-            assert len(lines) == len(known)
-            for line, annotation in zip(lines, known, strict=True):
+            assert len(lines) == len(expected_labels)
+            for line, annotation in zip(lines, expected_labels, strict=True):
                 number, *shares = line.split()
                 x, y, width, height = np.array(shares, float) * [160, 120, 160, 120]
                 assert int(number) + 1 == annotation["category_id"]

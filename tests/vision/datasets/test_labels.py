@@ -83,10 +83,10 @@ def test_full_boxes_of_balls_match_projected_outlines(world):
             )
             if not ((expected > -100) & (expected < 340)).all():
                 continue
-            near = [box for box in label_by_box if np.abs(np.array(box) - expected).max() <= 2.0]
+            matching_boxes = [box for box in label_by_box if np.abs(np.array(box) - expected).max() <= 2.0]
             hidden = not any(label.label == 0 for label in labels)
-            assert near or hidden or is_covered(world, arrangement, movable)
-            compared += bool(near)
+            assert matching_boxes or hidden or is_covered(world, arrangement, movable)
+            compared += bool(matching_boxes)
     assert compared >= 5
 
 
@@ -95,11 +95,11 @@ def is_covered(world, arrangement, movable):
     return not np.isin(geoms, movable.geoms).any()
 
 
-def outline(across, ahead, radius):
+def outline(sideways, forward, radius):
     """Return the minimum and maximum slope of the rays in a plane that touch a circle."""
-    distance = np.hypot(across, ahead)
-    middle, half = np.arctan2(across, ahead), np.arcsin(min(radius / distance, 1.0))
-    return np.tan(middle - half), np.tan(middle + half)
+    distance = np.hypot(sideways, forward)
+    center_angle, half_angle = np.arctan2(sideways, forward), np.arcsin(min(radius / distance, 1.0))
+    return np.tan(center_angle - half_angle), np.tan(center_angle + half_angle)
 
 
 def test_labels_match_mujoco_renderer(world):
@@ -187,22 +187,27 @@ def test_distractors_do_not_resemble_balls_and_drums(world):
     for number in range(20):
         for geom in world.distractors:
             world.shape_distractor(geom, np.random.default_rng(number))
-            half = model.geom_aabb[geom, 3:]
-            assert half.max() >= 2.4 * half.min()
+            half_extents = model.geom_aabb[geom, 3:]
+            assert half_extents.max() >= 2.4 * half_extents.min()
             if model.geom_type[geom] == kinds.mjGEOM_CAPSULE:
                 assert model.geom_size[geom, 1] >= 1.5 * model.geom_size[geom, 0]
 
 
 def test_few_objects_are_placed_behind_walls(world):
     """The wall of the yard is 6 m long, and 3 m from the center of the yard."""
-    behind = objects = 0
+    hidden_count = objects = 0
     for arrangement in shots(world, 40):
         for movable in arrangement.placed_objects:
-            there = world.simulation.data.geom_xpos[movable.geoms, :2].mean(axis=0)
-            here = np.array(arrangement.pose[:2])
+            object_position = world.simulation.data.geom_xpos[movable.geoms, :2].mean(axis=0)
+            camera_position = np.array(arrangement.pose[:2])
             objects += 1
-            if min(here[1], there[1]) < 2.95 and max(here[1], there[1]) > 3.05:
-                crossing = here[0] + (there[0] - here[0]) * (3.0 - here[1]) / (there[1] - here[1])
-                behind += bool(arrangement.structures) and abs(crossing) < 3.0
+            if (
+                min(camera_position[1], object_position[1]) < 2.95
+                and max(camera_position[1], object_position[1]) > 3.05
+            ):
+                crossing = camera_position[0] + (object_position[0] - camera_position[0]) * (
+                    3.0 - camera_position[1]
+                ) / (object_position[1] - camera_position[1])
+                hidden_count += bool(arrangement.structures) and abs(crossing) < 3.0
     assert objects > 50
-    assert behind < 0.2 * objects
+    assert hidden_count < 0.2 * objects

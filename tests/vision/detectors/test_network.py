@@ -57,8 +57,10 @@ def overlap(first, second):
     width = min(first[2], second[2]) - max(first[0], second[0])
     height = min(first[3], second[3]) - max(first[1], second[1])
     common = max(0, width) * max(0, height)
-    whole = (first[2] - first[0]) * (first[3] - first[1]) + (second[2] - second[0]) * (second[3] - second[1]) - common
-    return common / whole
+    union_area = (
+        (first[2] - first[0]) * (first[3] - first[1]) + (second[2] - second[0]) * (second[3] - second[1]) - common
+    )
+    return common / union_area
 
 
 def slow_boxes(rows, classes, limits, objectness=False):
@@ -66,10 +68,10 @@ def slow_boxes(rows, classes, limits, objectness=False):
     detections = []
     for row in rows:
         scores = [float(row[4 + objectness + index]) * (float(row[4]) if objectness else 1) for index in range(classes)]
-        best = max(range(classes), key=scores.__getitem__)
-        if scores[best] >= limits.threshold:
+        best_class = max(range(classes), key=scores.__getitem__)
+        if scores[best_class] >= limits.threshold:
             x, y, w, h = map(float, row[:4])
-            detections.append((scores[best], best, (x - w / 2, y - h / 2, x + w / 2, y + h / 2)))
+            detections.append((scores[best_class], best_class, (x - w / 2, y - h / 2, x + w / 2, y + h / 2)))
     detections.sort(key=lambda detection: -detection[0])
     selected = []
     for detection in detections:
@@ -129,9 +131,9 @@ def test_final_boxes_are_decoded(tmp_path, image, message):
     path = constant(tmp_path / "v10.onnx", rows, {**NAMES, **message})
     detections = opened(path).detect(image, LIMITS)
     assert [detections.name(index) for index in range(len(detections))] == ["cat", "cat", "ball"]
-    across, down, top = 128 / 200, 77 / 120, round((96 - 77) / 2 - 0.1)
+    x_scale, y_scale, top = 128 / 200, 77 / 120, round((96 - 77) / 2 - 0.1)
     assert detections.boxes[0] == pytest.approx(
-        [10 / across, (20 - top) / down, 40 / across, (60 - top) / down], abs=1e-4
+        [10 / x_scale, (20 - top) / y_scale, 40 / x_scale, (60 - top) / y_scale], abs=1e-4
     )
     assert detections.boxes[2].tolist() == [0, 0, 200, 120]
 
@@ -145,7 +147,7 @@ def test_dynamic_input_has_smallest_size_for_image(tmp_path, image):
 
 
 def test_half_precision_network_is_decoded(tmp_path, image):
-    path = columns(tmp_path / "half.onnx", metadata=NAMES, half=True)
+    path = columns(tmp_path / "half.onnx", metadata=NAMES, is_half_precision=True)
     output, *place = by_hand(path, image, 96, 128)
     check(opened(path).detect(image, LIMITS), slow_boxes(output[0].T, 3, LIMITS), image, *place, tolerance=1e-2)
 
@@ -162,7 +164,7 @@ def test_masks_are_ignored_with_note(tmp_path, image, task):
 
 def test_keypoints_are_ignored_with_note(tmp_path, image):
     facts = {"names": "{0: 'person'}", "task": "pose", "kpt_shape": "[17, 3]"}
-    path = columns(tmp_path / "pose.onnx", 1, metadata=facts, more=51)
+    path = columns(tmp_path / "pose.onnx", 1, metadata=facts, extra_columns=51)
     output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
     assert len(detector.detect(image, LIMITS)) == len(slow_boxes(output[0].T, 1, LIMITS))

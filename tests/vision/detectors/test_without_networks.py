@@ -48,10 +48,12 @@ def test_custom_colors_and_class_selection_are_applied():
     image = blank()
     image[40:80, 200:260] = (20, 60, 200)
     image[40:80, 20:60] = (200, 20, 30)
-    own = detector("colors", colors={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
-    assert sorted(names(own.detect(image, LIMITS))) == ["rose", "sky"]
-    assert names(own.detect(image, Limits(classes=frozenset({"sky"})))) == ["sky"]
-    assert names(own.detect(image, Limits(max_detections=1))) == ["sky"]
+    color_detector = detector(
+        "colors", colors={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]}
+    )
+    assert sorted(names(color_detector.detect(image, LIMITS))) == ["rose", "sky"]
+    assert names(color_detector.detect(image, Limits(classes=frozenset({"sky"})))) == ["sky"]
+    assert names(color_detector.detect(image, Limits(max_detections=1))) == ["sky"]
     assert len(detector("colors", least_area=1e6).detect(image, LIMITS)) == 0
 
 
@@ -93,10 +95,10 @@ def test_small_qr_code_is_read(turned):
     side = code.shape[0]
     corners = np.array([(0, 0), (side, 0), (side, side), (0, side)], np.float32)
     high = 100.0
-    seen = np.array(
+    small_code = np.array(
         [(100, 80), (100 + high, 80 + turned * 20), (100 + high, 80 + high - turned * 20), (100, 80 + high)], np.float32
     )
-    larger = cv2.getPerspectiveTransform(corners, 4 * seen)
+    larger = cv2.getPerspectiveTransform(corners, 4 * small_code)
     image = cv2.warpPerspective(code, larger, (4 * 320, 4 * 240), flags=cv2.INTER_NEAREST, borderValue=120)
     image = cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA)
     detections = detector("qr").detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
@@ -108,7 +110,7 @@ def test_small_qr_code_is_read(turned):
 def test_partial_qr_codes_are_not_an_error():
     code = cv2.resize(cv2.QRCodeEncoder.create().encode("kitchen"), None, fx=6, fy=6, interpolation=cv2.INTER_NEAREST)
     numbers = np.random.default_rng(4)
-    look = detector("qr")
+    qr_detector = detector("qr")
     for _ in range(40):
         image = numbers.integers(0, 255, (240, 320), dtype=np.uint8)
         top, left = (int(integer) for integer in numbers.integers(0, 120, 2))
@@ -117,7 +119,7 @@ def test_partial_qr_codes_are_not_an_error():
         for _ in range(int(numbers.integers(0, 4))):
             y, x = (int(integer) for integer in numbers.integers(0, 200, 2))
             image[y : y + 30, x : x + 30] = 255
-        detections = look.detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
+        detections = qr_detector.detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
         assert set(names(detections)) <= {"kitchen"}
 
 
@@ -131,8 +133,8 @@ def test_line_on_floor_is_detected():
     assert (left + right) / 2 == pytest.approx(200.5, abs=1)
     assert (top, bottom) == (180, 240)
     assert detections.scores[0] == 1.0
-    whole = detector("line", part=1.0, color=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
-    assert whole.boxes[0][1] == 100
+    line_detections = detector("line", part=1.0, color=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
+    assert line_detections.boxes[0][1] == 100
 
 
 @pytest.mark.parametrize("name", ["colors", "aruco", "apriltag", "qr", "line"])

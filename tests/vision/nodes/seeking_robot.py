@@ -69,10 +69,10 @@ class SeekingRobot(SteppedSimulation):
     def __enter__(self) -> Self:
         super().__enter__()
         self.put_ball(*self._ball)
-        where = {"target_frame": "odom", "ground_frame": "base_footprint", **_SIMULATED}
+        frame_parameters = {"target_frame": "odom", "ground_frame": "base_footprint", **_SIMULATED}
         names = [("detections", "tracking"), ("camera_info", "/camera/camera_info")]
         TrackingNode(self.graph, NodeOptions(namespace="/yolo", parameters=_SIMULATED))
-        Detect3DNode(self.graph, NodeOptions(namespace="/yolo", parameters=where, remappings=names))
+        Detect3DNode(self.graph, NodeOptions(namespace="/yolo", parameters=frame_parameters, remappings=names))
         self.seeker = ObjectSeeker(
             self.graph,
             NodeOptions(

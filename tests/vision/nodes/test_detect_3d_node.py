@@ -37,25 +37,25 @@ def header(frame="camera", stamp=NOW):
     return get_message("std_msgs/msg/Header")(frame_id=frame, stamp=stamp)
 
 
-def camera(test, topic, width=640, height=480, **more):
-    info = get_message("sensor_msgs/msg/CameraInfo")(header=header(), width=width, height=height, **more)
+def camera(test, topic, width=640, height=480, **fields):
+    info = get_message("sensor_msgs/msg/CameraInfo")(header=header(), width=width, height=height, **fields)
     info.k = [500.0, 0.0, width / 2 - 0.5, 0.0, 500.0, height / 2 - 0.5, 0.0, 0.0, 1.0]
     test.publish(topic, info)
     test.settle()
 
 
-def depth(test, values, encoding="32FC1", **more):
+def depth(test, values, encoding="32FC1", **fields):
     rows = np.ascontiguousarray(values, "<f4" if encoding == "32FC1" else "<u2")
-    image = get_message("sensor_msgs/msg/Image")(header=header(**more), encoding=encoding)
+    image = get_message("sensor_msgs/msg/Image")(header=header(**fields), encoding=encoding)
     image.height, image.width = rows.shape
     image.step, image.data = rows.strides[0], np.frombuffer(rows.tobytes(), np.uint8)
     test.publish("/depth_image", image)
     test.settle()
 
 
-def boxes(test, *given, frame="camera"):
+def boxes(test, *detections, frame="camera"):
     array = get_message("vision_msgs/msg/Detection2DArray")(header=header(frame))
-    array.detections = [detection(array.header, *box, "ball") for box in given]
+    array.detections = [detection(array.header, *box, "ball") for box in detections]
     for number, array_detection in enumerate(array.detections):
         array_detection.id = str(number + 7)
     test.publish("/detections", array)
@@ -80,13 +80,13 @@ def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, div
     depth(test, WALL * factor, encoding)
     boxes(test, BOX)
     (detection,) = recording.last.detections
-    at, size = detection.bbox.center.position, detection.bbox.size
-    assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
+    position, size = detection.bbox.center.position, detection.bbox.size
+    assert (position.x, position.y, position.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
     assert recording.last.header.frame_id == detection.header.frame_id == "base_link"
     assert detection.id == "7"
     assert detection.results[0].hypothesis.class_id == "ball"
-    assert detection.results[0].pose.pose.position.x == at.x
+    assert detection.results[0].pose.pose.position.x == position.x
     turn = detection.bbox.center.orientation
     assert abs(turn.w) == pytest.approx(1.0), "the box's x axis is along the view, and its z axis is up"
     _, box, label = markers.last.markers
@@ -168,8 +168,8 @@ def test_yolo_ros_messages_and_parameters_are_supported(test):
     test.publish("/detections", array)
     test.settle()
     (detection,) = recording.last.detections
-    at, size = detection.bbox3d.center.position, detection.bbox3d.size
-    assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
+    position, size = detection.bbox3d.center.position, detection.bbox3d.size
+    assert (position.x, position.y, position.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
     assert recording.last.header.frame_id == detection.bbox3d.frame_id == "base_link"
     assert (detection.id, detection.class_name, detection.bbox.center.position.x) == ("7", "ball", 320.0)

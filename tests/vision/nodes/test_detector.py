@@ -333,8 +333,8 @@ async def test_topic_type_mismatch_is_reported(test, start, warnings):
 async def test_incompatible_qos_is_reported(test, start, warnings):
     await start(model="colors", image_reliability=1)
     test.record("/yolo/detections")
-    offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-    test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", best_effort)
     await test.advance(11.0)
     assert warnings()[-2:] == [
         (
@@ -428,16 +428,16 @@ async def test_classes_set_during_loading_apply_after_loading(test, start, slow)
 
 
 async def test_closing_node_waits_silently_for_loading_detector(test, start, monkeypatch):
-    main, begun = threading.current_thread(), threading.Event()
+    main, has_begun = threading.current_thread(), threading.Event()
 
     def load(model, options):
-        begun.set()
+        has_begun.set()
         wait_until(lambda: is_waiting(main))
         raise LinkwrightError(Diagnostic("VISION102", phrase("gone")))
 
     monkeypatch.setattr(detector, "make_detector", load)
     running = await start(model="colors", loads=False)
-    await eventually(begun.is_set)
+    await eventually(has_begun.is_set)
     running.close()
     await test.settle()
     assert not running.finished.done()

@@ -13,19 +13,19 @@ SMALL = make_camera_model(320, 240, [250.0, 0.0, 159.5, 0.0, 250.0, 119.5, 0.0, 
 UP = np.array([0.0, -1.0, 0.0])
 
 
-def ball(center, radius, behind=4.0, camera=CAMERA):
+def ball(center, radius, background_depth=4.0, camera=CAMERA):
     """Return the depth image of a ball in front of a wall, and its box."""
     size = camera.width, camera.height
     columns, rows = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
     rays = camera.rays(np.stack([columns.ravel(), rows.ravel()], axis=1))
-    middle = np.asarray(center, np.float64)
-    a, b, c = (rays**2).sum(axis=1), rays @ middle, middle @ middle - radius**2
+    center_point = np.asarray(center, np.float64)
+    a, b, c = (rays**2).sum(axis=1), rays @ center_point, center_point @ center_point - radius**2
     root = b**2 - a * c
-    depths = np.where(root > 0, (b - np.sqrt(np.maximum(root, 0))) / a, behind).reshape(size[1], size[0])
+    depths = np.where(root > 0, (b - np.sqrt(np.maximum(root, 0))) / a, background_depth).reshape(size[1], size[0])
     hit = (root > 0).reshape(depths.shape)
-    down, across = np.flatnonzero(hit.any(axis=1)), np.flatnonzero(hit.any(axis=0))
+    hit_rows, hit_columns = np.flatnonzero(hit.any(axis=1)), np.flatnonzero(hit.any(axis=0))
     scale = 640 / size[0]
-    return depths, np.array([across[0], down[0], across[-1] + 1, down[-1] + 1]) * scale
+    return depths, np.array([hit_columns[0], hit_rows[0], hit_columns[-1] + 1, hit_rows[-1] + 1]) * scale
 
 
 @pytest.mark.parametrize("center", [(0.0, 0.0, 1.5), (0.5, 0.2, 2.0), (-0.9, -0.3, 3.0)])
@@ -100,8 +100,8 @@ def test_position_of_ball_on_ground_is_found():
 
 def test_position_on_ground_with_tilted_camera():
     tilt = np.radians(20.0)
-    up = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
-    place = position_on_ground(np.array([300.0, 200.0, 340.0, 240.0]), CAMERA, up, 1.0)
+    up_direction = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
+    place = position_on_ground(np.array([300.0, 200.0, 340.0, 240.0]), CAMERA, up_direction, 1.0)
     assert place.center[2] == pytest.approx(1.0 / np.sin(tilt), rel=0.05)
 
 

@@ -51,8 +51,8 @@ def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
     tracker = Tracker()
     ids = []
     for step in range(200):
-        gone = 30 <= step < 50 or 90 <= step < 150
-        result = tracker.update(detections_of() if gone else detections_of((100 + step, 200, 40)), step * PERIOD)
+        is_hidden = 30 <= step < 50 or 90 <= step < 150
+        result = tracker.update(detections_of() if is_hidden else detections_of((100 + step, 200, 40)), step * PERIOD)
         ids += result
     assert [key for key in dict.fromkeys(ids) if key] == [1, 2], "IDs are not reused"
     assert ids[28:32] == [1, 1, 1, 1]

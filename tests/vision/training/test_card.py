@@ -55,11 +55,11 @@ def sum_of(world):
     return hashlib.sha256(world.encode()).hexdigest()
 
 
-def write_card(folder, *worlds, more=()):
+def write_card(folder, *worlds, card_options=()):
     """Write the notes that `linkwright dataset` writes about the images of one or more runs."""
     folder.mkdir(exist_ok=True)
     listed = [{"name": f"rooms/{world}.world", "file": f"{world}.world", "sha256": sum_of(world)} for world in worlds]
-    runs = [{"seed": 3, "most": 10}, *more]
+    runs = [{"seed": 3, "most": 10}, *card_options]
     entries = [{"worlds": listed, "added": ["mbot.urdf"], "options": options} for options in runs]
     (folder / "dataset.json").write_text(json.dumps({"made": entries}))
     return folder
@@ -79,7 +79,7 @@ def test_card_names_evaluation_worlds_also_used_for_training(tmp_path):
 
 
 def test_card_describes_generation_of_dataset(tmp_path):
-    write_card(tmp_path, "playground", more=[{"seed": 3, "most": 10}, {"seed": 4, "most": 10}])
+    write_card(tmp_path, "playground", card_options=[{"seed": 3, "most": 10}, {"seed": 4, "most": 10}])
     assert dataset_facts(tmp_path) == {
         "worlds": f"playground (sha256 {sum_of('playground')[:12]})",
         "options of linkwright dataset": "seed 3, most 10; seed 4, most 10",

@@ -45,11 +45,11 @@ def options(shapes: Path, output: Path, **changed) -> Options:
     return replace(usual, **changed)
 
 
-def course_of(given: Options) -> TrainingLoop:
-    given.output.mkdir(exist_ok=True)
-    dataset = open_dataset(given.dataset)
-    labeled_images = read_labeled_images(dataset.read("train"), given.width, given.height)
-    return TrainingLoop(dataset.names, given, labeled_images, labeled_images)
+def train_course(settings: Options) -> TrainingLoop:
+    settings.output.mkdir(exist_ok=True)
+    dataset = open_dataset(settings.dataset)
+    labeled_images = read_labeled_images(dataset.read("train"), settings.width, settings.height)
+    return TrainingLoop(dataset.names, settings, labeled_images, labeled_images)
 
 
 def weights(training_loop: TrainingLoop) -> np.ndarray:
@@ -57,7 +57,7 @@ def weights(training_loop: TrainingLoop) -> np.ndarray:
 
 
 def test_network_overfits_eight_images(shapes, tmp_path):
-    training_loop = course_of(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
+    training_loop = train_course(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
     epochs = []
     training_loop.run(epochs.append)
     first, last = (
@@ -70,18 +70,18 @@ def test_network_overfits_eight_images(shapes, tmp_path):
 
 
 def test_same_seed_gives_same_weights(shapes, tmp_path):
-    same = [course_of(options(shapes, tmp_path, seed=seed)) for seed in (3, 3, 4)]
-    for training_loop in same:
+    courses = [train_course(options(shapes, tmp_path, seed=seed)) for seed in (3, 3, 4)]
+    for training_loop in courses:
         training_loop.run(lambda _: None)
-    assert (weights(same[0]) == weights(same[1])).all()
-    assert (weights(same[0]) != weights(same[2])).any()
+    assert (weights(courses[0]) == weights(courses[1])).all()
+    assert (weights(courses[0]) != weights(courses[2])).any()
 
 
 def test_bfloat16_training_matches_float32_within_rounding(shapes, tmp_path):
     losses = []
     for precision in ("float32", "bfloat16"):
         training_loop, received = (
-            course_of(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)),
+            train_course(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)),
             [],
         )
         training_loop.run(received.append)
@@ -93,21 +93,21 @@ def test_bfloat16_training_matches_float32_within_rounding(shapes, tmp_path):
 
 
 def test_resumed_training_matches_uninterrupted_training(shapes, tmp_path):
-    whole = course_of(options(shapes, tmp_path / "whole"))
-    whole.run(lambda _: None)
-    begun = course_of(options(shapes, tmp_path / "begun"))
+    uninterrupted = train_course(options(shapes, tmp_path / "whole"))
+    uninterrupted.run(lambda _: None)
+    interrupted = train_course(options(shapes, tmp_path / "begun"))
 
     def stop_after_two(epoch):
         if epoch.number == 2:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        begun.run(stop_after_two)
-    resumed = course_of(options(shapes, tmp_path / "begun"))
+        interrupted.run(stop_after_two)
+    resumed = train_course(options(shapes, tmp_path / "begun"))
     resumed.load(tmp_path / "begun" / "last.pt")
     assert resumed.epoch == 2
     resumed.run(lambda _: None)
-    assert (weights(resumed) == weights(whole)).all()
+    assert (weights(resumed) == weights(uninterrupted)).all()
 
 
 @pytest.mark.parametrize("content", [b"", b"none", None])
@@ -115,14 +115,14 @@ def test_malformed_checkpoint_is_reported(shapes, tmp_path, content):
     if content is not None:
         (tmp_path / "last.pt").write_bytes(content)
     with pytest.raises(LinkwrightError) as caught:
-        course_of(options(shapes, tmp_path)).load(tmp_path / "last.pt")
+        train_course(options(shapes, tmp_path)).load(tmp_path / "last.pt")
     assert caught.value.diagnostics[0].code == "VISION306"
 
 
 def test_checkpoint_of_another_network_is_rejected(shapes, tmp_path):
-    course_of(options(shapes, tmp_path)).save(tmp_path / "last.pt")
+    train_course(options(shapes, tmp_path)).save(tmp_path / "last.pt")
     with pytest.raises(LinkwrightError) as caught:
-        course_of(options(shapes, tmp_path, channels=8)).load(tmp_path / "last.pt")
+        train_course(options(shapes, tmp_path, channels=8)).load(tmp_path / "last.pt")
     assert "other classes or sizes" in str(caught.value.diagnostics[0].message)
 
 
@@ -170,8 +170,8 @@ def test_loaded_weights_match_exported_network(exported):
     other, file = exported
     network, image = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [torch.rand(8, 3, 64, 64)])
-    for output, wanted in zip(output_of(network, image), output_of(other, image), strict=True):
-        assert torch.allclose(output, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
+    for output, expected in zip(output_of(network, image), output_of(other, image), strict=True):
+        assert torch.allclose(output, expected, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
 
 
 def test_loaded_network_has_measured_batch_statistics(exported):
@@ -179,18 +179,18 @@ def test_loaded_network_has_measured_batch_statistics(exported):
     network, images = Network(Shape(3, 4)), torch.rand(16, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [images])
     with torch.no_grad():
-        _, wanted = network.eval()(images)
+        _, expected_logits = network.eval()(images)
         _, training_output = network.train()(images)
-    assert (training_output - wanted).abs().mean() < 0.2 * wanted.std()
+    assert (training_output - expected_logits).abs().mean() < 0.2 * expected_logits.std()
 
 
 def test_loaded_class_weights_are_matched_by_name(exported):
     other, file = exported
     network, image = Network(Shape(2, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("ring", "square"), file, [torch.rand(8, 3, 64, 64)])
-    (boxes, logits), (wanted_boxes, wanted) = output_of(network, image), output_of(other, image)
+    (boxes, logits), (wanted_boxes, expected_logits) = output_of(network, image), output_of(other, image)
     assert torch.allclose(boxes, wanted_boxes, rtol=0.02, atol=0.1)
-    assert torch.allclose(logits[:, 1], wanted[:, 1], rtol=0.02, atol=0.1)
+    assert torch.allclose(logits[:, 1], expected_logits[:, 1], rtol=0.02, atol=0.1)
     assert network.heads[0].scores[-1].bias[0].item() == pytest.approx(-np.log(99))
 
 
@@ -216,12 +216,12 @@ def test_incompatible_weights_are_rejected(exported, tmp_path, content, channels
 def test_training_starts_from_weights_file_and_card_names_it(shapes, tmp_path, capsys):
     words = ["vision", "train", str(shapes), "--size", "96x96", "--channels", "4", "--threads", "1", "--epochs", "1"]
     assert main([*words, "-o", str(tmp_path / "first"), "--name", "first"]) == 0
-    begun = tmp_path / "first" / "first.onnx"
-    assert main([*words, "-o", str(tmp_path / "second"), "--weights", str(begun), "--rate", "1e-9"]) == 0
+    first_weights = tmp_path / "first" / "first.onnx"
+    assert main([*words, "-o", str(tmp_path / "second"), "--weights", str(first_weights), "--rate", "1e-9"]) == 0
     capsys.readouterr()
     sessions = [
         onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
-        for file in (begun, tmp_path / "second" / "detector.onnx")
+        for file in (first_weights, tmp_path / "second" / "detector.onnx")
     ]
     image = np.random.default_rng(0).random((1, 3, 96, 96), np.float32)
     first, second = (session.run(None, {"images": image})[0][0, :4] for session in sessions)
@@ -232,24 +232,24 @@ def test_training_starts_from_weights_file_and_card_names_it(shapes, tmp_path, c
 def test_generalized_iou_orders_disjoint_boxes():
     first = torch.tensor([[0.0, 0.0, 10.0, 10.0]] * 3)
     second = torch.tensor([[0.0, 0.0, 10.0, 10.0], [20.0, 0.0, 30.0, 10.0], [90.0, 0.0, 100.0, 10.0]])
-    plain, generalized = pairwise_iou(first, second)
-    assert plain.tolist() == pytest.approx([1, 0, 0])
-    assert generalized.tolist() == pytest.approx([1, -1 / 3, -0.8])
+    plain_iou, generalized_iou = pairwise_iou(first, second)
+    assert plain_iou.tolist() == pytest.approx([1, 0, 0])
+    assert generalized_iou.tolist() == pytest.approx([1, -1 / 3, -0.8])
 
 
 def test_cells_are_assigned_to_objects_and_ignored_regions():
-    middles, _ = cells(64, 64)
-    boxes = torch.cat((middles - 12, middles + 12), 1)[None]
-    logits = torch.zeros(1, len(middles), 2)
+    cell_centers, _ = cells(64, 64)
+    boxes = torch.cat((cell_centers - 12, cell_centers + 12), 1)[None]
+    logits = torch.zeros(1, len(cell_centers), 2)
     objects = torch.tensor([[[1.0, 8, 8, 32, 32], [-2.0, 40, 40, 60, 60], [-1.0, -1, -1, -1, -1]]])
-    wanted = assign(boxes, logits, middles, objects)
-    inside = (middles >= 8).all(1) & (middles <= 32).all(1)
-    assert wanted.is_assigned[0].sum() == 10
-    assert not (wanted.is_assigned[0] & ~inside).any()
-    assert (wanted.scores[0][..., 0] == 0).all()
-    assert wanted.scores[0][..., 1].max() > 0.9
-    hidden = (middles >= 40).all(1) & (middles <= 60).all(1)
-    assert (wanted.is_ignored[0] == hidden).all()
+    expected = assign(boxes, logits, cell_centers, objects)
+    inside = (cell_centers >= 8).all(1) & (cell_centers <= 32).all(1)
+    assert expected.is_assigned[0].sum() == 10
+    assert not (expected.is_assigned[0] & ~inside).any()
+    assert (expected.scores[0][..., 0] == 0).all()
+    assert expected.scores[0][..., 1].max() > 0.9
+    hidden = (cell_centers >= 40).all(1) & (cell_centers <= 60).all(1)
+    assert (expected.is_ignored[0] == hidden).all()
 
 
 def test_batch_without_objects_has_loss():

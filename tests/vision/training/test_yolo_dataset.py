@@ -154,7 +154,7 @@ def test_images_are_letterboxed_with_gray(shapes):
 
 def test_augmentation_keeps_boxes_around_objects(shapes):
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    seen = 0
+    object_count = 0
     for seed in range(40):
         image, objects = augment(labeled_images, seed % 3, VIEW, np.random.default_rng(seed))
         assert image.shape == (64, 64, 3)
@@ -162,10 +162,10 @@ def test_augmentation_keeps_boxes_around_objects(shapes):
             assert 0 <= left < right <= 64
             assert 0 <= top < bottom <= 64
             if kind == 0 and min(right - left, bottom - top) > 8:
-                middle = image[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
-                seen += 1
-                assert middle[0] > middle[2]  # discs are red
-    assert seen > 10
+                center_color = image[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
+                object_count += 1
+                assert center_color[0] > center_color[2]  # discs are red
+    assert object_count > 10
 
 
 def test_augmentation_is_deterministic_for_seed(shapes):
@@ -180,11 +180,11 @@ def test_last_epochs_use_whole_images(shapes):
     assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
     assert options.view(4).scales[0] > options.view(0).scales[0]
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    same = CropSettings((96, 96), (1.0, 1.0))
-    (_, objects) = augment(labeled_images, 0, same, np.random.default_rng(5))
-    here = labeled_images.objects[0]
-    sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
-    assert (objects[:, 0] == here[:, 0]).all()
+    whole_image_settings = CropSettings((96, 96), (1.0, 1.0))
+    (_, objects) = augment(labeled_images, 0, whole_image_settings, np.random.default_rng(5))
+    first_objects = labeled_images.objects[0]
+    sides = (objects[:, 3:] - objects[:, 1:3]) / (first_objects[:, 3:] - first_objects[:, 1:3])
+    assert (objects[:, 0] == first_objects[:, 0]).all()
     assert np.median(sides) == pytest.approx(1, abs=0.12)  # the objects are complete, and keep their sizes
 
 

@@ -63,14 +63,14 @@ def test_first_graph_query_is_answered_completely(processes, monkeypatch):
     monkeypatch.setattr(transport, "_QUIET", 1.0)
     talker, asks = processes("talker"), processes("asks")
     talker.node.create_publisher(String, "chatter", 10)
-    hears = talker.node.create_subscription(String, "said_late", print, 10)
-    late = processes("late")
-    late.node.create_publisher(String, "chatter", 10)
-    late.node.create_publisher(String, "said_late", 10)
-    talker.spin_until(lambda: hears.get_publisher_count() == 1)  # the router then knows all endpoints
+    subscription = talker.node.create_subscription(String, "said_late", print, 10)
+    late_process = processes("late")
+    late_process.node.create_publisher(String, "chatter", 10)
+    late_process.node.create_publisher(String, "said_late", 10)
+    talker.spin_until(lambda: subscription.get_publisher_count() == 1)  # the router then knows all endpoints
     assert asks.node.count_publishers("chatter") == 2
     assert sorted(asks.node.get_node_names()) == ["asks", "late", "talker"]
-    late.close()
+    late_process.close()
     asks.spin_until(lambda: asks.node.count_publishers("chatter") == 1)
     assert sorted(asks.node.get_node_names()) == ["asks", "talker"]
 

@@ -67,7 +67,7 @@ class Site:
 
     def program(self, host: str, name: str, **environment: str) -> Program:
         """Start a program with a graph."""
-        program = Program("far_program", name, within=self.hosts.within(host), folder=self._folder, **environment)
+        program = Program("far_program", name, prefix_words=self.hosts.within(host), folder=self._folder, **environment)
         self._started.append(program)
         return program
 
@@ -167,8 +167,10 @@ def test_desk_receives_only_subscribed_and_publishes_only_allowed_topics(site, r
 
 
 def test_host_without_valid_certificate_is_rejected(site, robot, tmp_path):
-    stranger = "openssl req -x509 -newkey rsa:2048 -nodes -keyout desk-key.pem -out desk.pem -days 1 -subj /CN=desk"
-    subprocess.run(stranger.split(), cwd=tmp_path, check=True, capture_output=True)
+    certificate_command = (
+        "openssl req -x509 -newkey rsa:2048 -nodes -keyout desk-key.pem -out desk.pem -days 1 -subj /CN=desk"
+    )
+    subprocess.run(certificate_command.split(), cwd=tmp_path, check=True, capture_output=True)
     outsider = site.program(DESK, "outsider", ZENOH_SESSION_CONFIG_URI="desk.json5")
     assert outsider.ask("nodes") == ["outsider"]
     assert "outsider" not in robot.ask("nodes")

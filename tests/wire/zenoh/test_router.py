@@ -82,14 +82,14 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
         future = client.call_async(AddTwoInts.Request(a=first, b=10))
         spin_both(future.done)
         assert future.result().sum == first + 10
-        late = processes(f"late{number}")
+        late_process = processes(f"late{number}")
         texts: list[str] = []
-        late.node.create_subscription(
+        late_process.node.create_subscription(
             String, "described", lambda message, texts=texts: texts.append(message.data), LASTING
         )
-        late.spin_until(lambda texts=texts: texts)
+        late_process.spin_until(lambda texts=texts: texts)
         assert texts == ["robot"]
-        late.close()
+        late_process.close()
     assert chatter_texts == ["before", "after", "and again"]
     assert described == ["robot"]
 

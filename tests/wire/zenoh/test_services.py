@@ -41,7 +41,7 @@ def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
     thread.start()
     callers = [process.node.create_client(AddTwoInts, "add") for process in clients]
     assert all(caller.wait_for_service(60) for caller in callers)
-    wrong = []
+    wrong_responses = []
 
     def call(process, caller, offset):
         for first in range(0, CALLS, AT_ONCE):
@@ -50,7 +50,7 @@ def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
             process.spin_until(lambda futures=futures: all(future.done() for future in futures))
             sums = [future.result().sum for future in futures]
             if sums != [offset + number for number in numbers]:
-                wrong.append((offset, sums))
+                wrong_responses.append((offset, sums))
 
     threads = [
         threading.Thread(target=call, args=(process, caller, 10_000 * number))
@@ -65,7 +65,7 @@ def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
     finally:
         stop.set()
         thread.join()
-    assert wrong == []
+    assert wrong_responses == []
 
 
 def test_failed_request_is_reported_once(processes):

@@ -135,10 +135,10 @@ def test_sample_without_attachment_is_dropped_and_reported_once(processes):
     process.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     with open_session(build_config(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/{type_hash(String)}"
-        stranger = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
-        process.spin_until(lambda: stranger.matching_status.matching)
+        raw_publisher = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
+        process.spin_until(lambda: raw_publisher.matching_status.matching)
         for _ in range(3):
-            stranger.put(serialize(String(data="who am I")))
+            raw_publisher.put(serialize(String(data="who am I")))
         process.spin_until(process.warnings)
     assert not texts
     (text,) = process.warnings()
@@ -152,9 +152,11 @@ def test_raw_subscription_accepts_unknown_type(processes):
     with open_session(build_config(read_settings())) as session:
         from linkwright.wire.zenoh import attachment
 
-        stranger = session.declare_publisher(f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00")
-        process.spin_until(lambda: stranger.matching_status.matching)
-        stranger.put(b"\0\1\0\0abcd", attachment=attachment.write(1, 2, bytes(16)))
+        raw_publisher = session.declare_publisher(
+            f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00"
+        )
+        process.spin_until(lambda: raw_publisher.matching_status.matching)
+        raw_publisher.put(b"\0\1\0\0abcd", attachment=attachment.write(1, 2, bytes(16)))
         process.spin_until(lambda: payloads)
     assert payloads == [b"\0\1\0\0abcd"]
 
@@ -177,9 +179,11 @@ def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     marker.kill()
     process.spin_until(lambda: lost)  # reports about publishers that left would have come first
     assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
-    again = programs("our_program", "marker")
+    restarted_program = programs("our_program", "marker")
     process.spin_until(lambda: process.node.get_node_names().count("marker") == 1)
-    again.ask_until(lambda nodes: nodes == ["marker", "ours"], "nodes")  # the discovery must work in both directions
+    restarted_program.ask_until(
+        lambda nodes: nodes == ["marker", "ours"], "nodes"
+    )  # the discovery must work in both directions
 
 
 LAUNCH_FILE = """

@@ -62,10 +62,10 @@ def primitive(kind: int, *dimensions: float) -> Any:
 
 
 def collision_object(
-    name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00"
+    name: str, *primitives: Any, frame: str = "base", object_pose: Any = None, operation: bytes = b"\x00"
 ) -> Any:
     """Return a CollisionObject, by default a box of one meter."""
-    message = CollisionObject(id=name, operation=operation, pose=at or pose())
+    message = CollisionObject(id=name, operation=operation, pose=object_pose or pose())
     message.header.frame_id = frame
     if operation in (b"\x00", b"\x02"):
         message.primitives = list(primitives) or [primitive(SolidPrimitive.BOX, 1, 1, 1)]

@@ -141,8 +141,8 @@ async def test_loop_animation_repeats_motion():
 async def test_color_and_trail_are_shown():
     async with moving(SLOW + ", Show Trail: true, Color Enabled: true") as (world, publish_and_settle):
         drawn = await publish_and_settle(trajectory(0.1, 0.2, 0.3))
-        hands = sorted(name for name in drawn if name.endswith("/hand"))
-        assert hands == [
+        hand_names = sorted(name for name in drawn if name.endswith("/hand"))
+        assert hand_names == [
             "Planned Path 0/hand",
             "Planned Path 1/hand",
             "Planned Path 2/hand",
@@ -177,9 +177,9 @@ async def test_invalid_motions_are_reported():
             "error",
             "The position of joint 'shoulder' must be finite, but is inf",
         )
-        strange = trajectory(0.1)
-        strange.trajectory[0].joint_trajectory.joint_names = ["elbow"]
-        await publish_and_settle(strange)
+        invalid_motion = trajectory(0.1)
+        invalid_motion.trajectory[0].joint_trajectory.joint_names = ["elbow"]
+        await publish_and_settle(invalid_motion)
         assert world.status("Trajectory")["Joints"] == ("warn", "The robot has no joint 'elbow'")
         await publish_and_settle(trajectory(0.1))
         assert "Joints" not in world.status("Trajectory")
@@ -192,8 +192,8 @@ async def test_robot_state_highlights_links():
     ):
         red = ObjectColor(id="hand")
         red.color.r = red.color.a = 1.0
-        nobody = ObjectColor(id="foot")
-        message = DisplayRobotState(state=state(shoulder=math.pi / 2), highlight_links=[red, nobody])
+        unknown_color = ObjectColor(id="foot")
+        message = DisplayRobotState(state=state(shoulder=math.pi / 2), highlight_links=[red, unknown_color])
         message.state.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand"))]
         drawn = await publish_and_settle(message)
         assert drawn["Robot State/hand"]["color"] == [1, 0, 0, 1]

@@ -42,9 +42,9 @@ def test_leaf_near_root_is_a_large_cell():
 
 
 def test_full_octree_has_probability_of_each_leaf():
-    inner, leaf = struct.pack("<fB", 0.0, 0b0000_0011), struct.pack("<fB", 0.0, 0)
-    sure = struct.pack("<fB", 2.0, 0)
-    cells = read(inner + leaf + sure, binary=False)
+    inner_node, leaf_node = struct.pack("<fB", 0.0, 0b0000_0011), struct.pack("<fB", 0.0, 0)
+    certain_leaf = struct.pack("<fB", 2.0, 0)
+    cells = read(inner_node + leaf_node + certain_leaf, binary=False)
     assert cells.probabilities.tolist() == pytest.approx([0.5, 0.8808], abs=1e-4)
     assert cells.centers[:, 0].tolist() == [-0.5 * 2**14, 0.5 * 2**14]
 
@@ -87,8 +87,8 @@ def test_arbitrary_bytes_are_read_or_rejected(data, binary):
 
 def test_hidden_cells_are_not_drawn():
     solid = node(**{f"c{child}": OCCUPIED for child in range(8)})
-    whole = node(**{f"c{child}": INNER for child in range(8)})
-    data = node(c7=INNER) + node(c0=INNER) * 12 + whole + (whole + solid * 8) * 8
+    full_tree = node(**{f"c{child}": INNER for child in range(8)})
+    data = node(c7=INNER) + node(c0=INNER) * 12 + full_tree + (full_tree + solid * 8) * 8
     cells = read(data)
     assert len(cells.sizes) == 512
     (marker,) = octomap_markers(cells, "map", frame="base", base=HERE, alpha=0.5, by_probability=False)

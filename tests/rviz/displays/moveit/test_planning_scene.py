@@ -106,7 +106,7 @@ async def test_primitives_planes_and_meshes_are_drawn():
             primitive(SolidPrimitive.SPHERE, 0.5),
             primitive(SolidPrimitive.CYLINDER, 2, 0.5),
             primitive(SolidPrimitive.CONE, 2, 0.5),
-            at=pose(x=5.0),
+            object_pose=pose(x=5.0),
         )
         many.primitive_poses = [pose(), pose(y=1.0), pose(y=2.0), pose(y=3.0)]
         mesh = get_message("shape_msgs/msg/Mesh")()
@@ -143,7 +143,9 @@ async def test_objects_are_added_moved_appended_and_removed():
             "Scene Geometry/a",
             "Scene Geometry/b",
         ]
-        moved = await source.publish_scene(scene(collision_object("a", at=pose(z=2.0), operation=MOVE), diff=True))
+        moved = await source.publish_scene(
+            scene(collision_object("a", object_pose=pose(z=2.0), operation=MOVE), diff=True)
+        )
         assert moved["Scene Geometry/a"]["pose"][:3] == [0, 0, 2]
         grown = await source.publish_scene(scene(collision_object("b", primitive(2, 1), operation=APPEND), diff=True))
         assert "Scene Geometry/b primitive 1" in grown
@@ -162,7 +164,9 @@ async def test_objects_are_added_moved_appended_and_removed():
 async def test_attached_object_moves_with_its_link():
     async with planning_scene_world() as (_, source):
         robot = state(shoulder=0.0, wrist=0.0)
-        robot.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand", at=pose(x=0.1)))]
+        robot.attached_collision_objects = [
+            attached("hand", collision_object("cup", frame="hand", object_pose=pose(x=0.1)))
+        ]
         shown = await source.publish_scene(scene(collision_object("cup"), robot=robot))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 1])
         assert shown["Scene Robot holds/cup"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 1])
@@ -268,7 +272,7 @@ async def test_move_group_namespace_selects_service_and_description():
 
 async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
     async with planning_scene_world() as (world, source):
-        nan = collision_object("nan", at=pose(x=math.nan))
+        nan = collision_object("nan", object_pose=pose(x=math.nan))
         short = collision_object("short", primitive(SolidPrimitive.BOX, 1, 1))
         kind = collision_object("kind", primitive(9, 1, 1, 1))
         poses = collision_object("poses")
@@ -346,9 +350,9 @@ async def test_page_receives_only_changed_objects():
     async with planning_scene_world() as (world, source):
         await source.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
         (store,) = world.display("PlanningScene").data()
-        _, seen = store.since(0)
+        _, revision = store.since(0)
         await source.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
-        assert store.since(seen)[0] is None
+        assert store.since(revision)[0] is None
 
 
 @pytest.mark.parametrize("cls", ["PlanningScene", "Trajectory", "RobotState", "MotionPlanning"])
