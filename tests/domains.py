@@ -6,7 +6,7 @@ import functools
 import random
 import socket
 
-_LAST = 100
+_LAST_DOMAIN = 100
 """The last domain. From 101 on, the ports of a domain are in Linux's range of ephemeral ports."""
 _FIRST_PORT = 27_000
 
@@ -23,7 +23,7 @@ def own_domain(which: int = 0) -> int:
     Args:
         which: distinguishes several domains of a test.
     """
-    domains = list(range(1, _LAST + 1))
+    domains = list(range(1, _LAST_DOMAIN + 1))
     random.SystemRandom().shuffle(domains)
     for number in domains:
         lock = socket.socket()

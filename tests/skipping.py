@@ -16,10 +16,10 @@ from typing import Any, TypeVar
 
 from linkwright.graph import SystemClock, Timebase
 
-_LOOK = 0.0005
+_LOOK_S = 0.0005
 """The seconds to wait for sockets and other threads before time advances."""
-_STEP = 0.02
-"""The maximum seconds per advance, so that data that arrives after `_LOOK` does not meet a timeout."""
+_STEP_S = 0.02
+"""The maximum seconds per advance, so that data that arrives after `_LOOK_S` does not meet a timeout."""
 
 T = TypeVar("T")
 
@@ -36,9 +36,9 @@ class _SkippingSelector(selectors.DefaultSelector):  # type: ignore[misc, valid-
     def select(self, timeout: float | None = None) -> Any:
         if timeout is None or timeout <= 0 or self.working:
             return super().select(timeout)
-        ready = super().select(_LOOK)
+        ready = super().select(_LOOK_S)
         if not ready:
-            self.passed += min(timeout, _STEP)
+            self.passed += min(timeout, _STEP_S)
         return ready
 
 

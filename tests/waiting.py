@@ -12,14 +12,14 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-SECONDS = 60.0
-_PAUSE = 0.005
+TIMEOUT_S = 60.0
+_PAUSE_S = 0.005
 _EXECUTOR_WAITS = ("_sleep", "work.py")
 """The function, and its file, in which an executor waits for work."""
 
 
 def wait_until(
-    condition: Callable[[], object], seconds: float = SECONDS, what: object = "", pause: float = _PAUSE
+    condition: Callable[[], object], seconds: float = TIMEOUT_S, what: object = "", pause: float = _PAUSE_S
 ) -> None:
     """Wait in this thread until a condition holds.
 
@@ -33,12 +33,12 @@ def wait_until(
         time.sleep(pause)
 
 
-async def eventually(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:
+async def eventually(condition: Callable[[], object], seconds: float = TIMEOUT_S, what: object = "") -> None:
     """Let the other tasks run until a condition holds."""
     limit = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < limit, _failure(seconds, what)
-        await asyncio.sleep(_PAUSE)
+        await asyncio.sleep(_PAUSE_S)
 
 
 def is_waiting(thread: threading.Thread) -> bool:

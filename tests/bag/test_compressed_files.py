@@ -14,7 +14,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import String, serialize, type_hash
 from linkwright.messages.schema_text import schema_of
 
-START = 1_700_000_000_000_000_000
+START_NS = 1_700_000_000_000_000_000
 STRING = "std_msgs/msg/String"
 MODES = [CompressionMode.FILE, CompressionMode.MESSAGE]
 PLUGINS = [StoragePlugin.MCAP, StoragePlugin.SQLITE3]
@@ -30,7 +30,7 @@ def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length:
             for name in ("/a", "/b")
         ]
         for number in range(length):
-            writer.write(topics[number % 2], START + number, serialize(String(data=f"number {number}" * 100)))
+            writer.write(topics[number % 2], START_NS + number, serialize(String(data=f"number {number}" * 100)))
     return folder
 
 
@@ -47,7 +47,7 @@ def test_compressed_file_without_folder_has_same_messages(
     with BagReader(folder) as folder_reader, BagReader(file_copy) as file_reader:
         assert list(file_reader.messages()) == list(folder_reader.messages())
         assert file_reader.storage == folder_reader.storage == plugin.name.lower()
-        for time_ns in (START - 1, START, START + 7, START + 30):
+        for time_ns in (START_NS - 1, START_NS, START_NS + 7, START_NS + 30):
             assert file_reader.state_at(["/a", "/b"], time_ns) == folder_reader.state_at(["/a", "/b"], time_ns)
     (folder / "metadata.yaml").unlink()
     assert is_recording(folder)

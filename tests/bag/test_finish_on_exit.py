@@ -10,7 +10,7 @@ import pytest
 from linkwright.bag import BagReader, BagWriter
 from linkwright.files.unfinished import finish_all
 from linkwright.messages import String, serialize
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 FORMS = {
     "mcap": ("bag", {}),
@@ -54,7 +54,7 @@ def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -
         finish_all()
     finally:
         over.set()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
     numbers_written = numbers(writer.path)
     assert numbers_written == list(range(1, len(numbers_written) + 1))
     assert len(numbers_written) >= 100

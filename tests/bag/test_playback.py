@@ -15,8 +15,8 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, Graph, JumpClock, LogRecord, QoSProfile
 from linkwright.messages import String, deserialize, get_message, serialize
 
-START = 1_700_000_000_000_000_000
-SECOND = 1_000_000_000
+START_NS = 1_700_000_000_000_000_000
+SECOND_NS = 1_000_000_000
 STRING, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
 
 
@@ -44,9 +44,9 @@ def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, c
             ("/tf_static", TF, DEFAULT_QOS),
         ):
             writer.add_topic(name, kind, [qos])
-        writer.write("/robot_description", START, text("<robot/>"))
+        writer.write("/robot_description", START_NS, text("<robot/>"))
         for half in range(40):
-            stamp = START + half * SECOND // 2
+            stamp = START_NS + half * SECOND_NS // 2
             if half in (0, 18):
                 writer.write("/tf_static", stamp, transform(f"static {half}"))
             writer.write("/tf", stamp, transform(f"moving {half}"))
@@ -76,14 +76,14 @@ def test_state_at_returns_last_message_of_each_topic_and_transforms(
     tmp_path: Path, storage: str, compressed: bool
 ) -> None:
     with BagReader(recorded(tmp_path, storage, compressed=compressed)) as bag:
-        time_ns = START + 7 * SECOND + 1
+        time_ns = START_NS + 7 * SECOND_NS + 1
         assert words(bag.state_at(TOPICS, time_ns)) == [
             "static 0", "<robot/>", "b 4", "moving 11", "moving 12", "moving 13", "moving 14", "a 7",
         ]  # fmt: skip
-        assert words(bag.state_at(["/tf_static", "/a"], START + 12 * SECOND)) == ["static 0", "static 18", "a 12"]
-        assert bag.state_at(["/a"], START - 1) == []
-        assert bag.time_before(["/a", "/b"], START + 5 * SECOND) == START + 4 * SECOND
-        assert bag.time_before(["/a"], START) is None
+        assert words(bag.state_at(["/tf_static", "/a"], START_NS + 12 * SECOND_NS)) == ["static 0", "static 18", "a 12"]
+        assert bag.state_at(["/a"], START_NS - 1) == []
+        assert bag.time_before(["/a", "/b"], START_NS + 5 * SECOND_NS) == START_NS + 4 * SECOND_NS
+        assert bag.time_before(["/a"], START_NS) is None
 
 
 def without_index(data: bytes, *, message_indexes: bool) -> bytes:
@@ -107,7 +107,7 @@ def test_bag_reader_indexes_mcap_without_index(tmp_path: Path, way: str, compres
     (file,) = folder.glob("*.mcap")
     with BagReader(file) as bag:
         messages = list(bag.messages())
-        time_ns = START + 7 * SECOND + 1
+        time_ns = START_NS + 7 * SECOND_NS + 1
         state, counts = bag.state_at(TOPICS, time_ns), bag.counts(4)
     unindexed = tmp_path / "bare.mcap"
     data = file.read_bytes()
@@ -133,23 +133,23 @@ def test_message_counts_per_interval_are_returned(tmp_path: Path, storage: str) 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> None:
     """Also compare times before and after all messages, in long pauses, and at equal times of several messages."""
-    stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND, 90 * SECOND]
+    stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND_NS, 90 * SECOND_NS]
     topics = ("/a", "/b", "/tf", "/tf_static")
     with BagWriter(tmp_path / "bag", storage) as writer:
         for name in topics:
             writer.add_topic(name, TF if "tf" in name else STRING, [DEFAULT_QOS])
         for number, stamp in enumerate(stamps):
             for topic in topics[: 1 + number % 4]:
-                writer.write(topic, START + stamp, transform(f"{number}") if "tf" in topic else text(f"{number}"))
+                writer.write(topic, START_NS + stamp, transform(f"{number}") if "tf" in topic else text(f"{number}"))
     with BagReader(tmp_path / "bag") as bag:
         messages = list(bag.messages())
-        for time_ns in sorted({START + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
+        for time_ns in sorted({START_NS + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
             before = [message for message in messages if message[1] <= time_ns]
             transforms = [message for message in before if message[0] == "/tf"]
             since = min(
-                time_ns, transforms[-1][1] if transforms and transforms[-1][1] < time_ns - 2 * SECOND else time_ns
+                time_ns, transforms[-1][1] if transforms and transforms[-1][1] < time_ns - 2 * SECOND_NS else time_ns
             )
-            moving = [transform for transform in transforms if transform[1] >= since - 2 * SECOND]
+            moving = [transform for transform in transforms if transform[1] >= since - 2 * SECOND_NS]
             last = [[message for message in before if message[0] == topic][-1:] for topic in ("/a", "/b")]
             static = [message for message in before if message[0] == "/tf_static"]
             assert sorted(bag.state_at(topics, time_ns)) == sorted([*static, *moving, *last[0], *last[1]])
@@ -182,7 +182,7 @@ class PlayedRecording:
 
     def _tick(self, message: Any) -> None:
         stamp = message.clock
-        self.times.append(stamp.sec * SECOND + stamp.nanosec - START)
+        self.times.append(stamp.sec * SECOND_NS + stamp.nanosec - START_NS)
 
     async def settle(self) -> None:
         for _ in range(4):  # a seek takes a few turns of the loop
@@ -212,7 +212,7 @@ async def test_playback_publishes_subscribed_topics_and_clock(recording: PlayedR
     await recording.clock.advance(2.5)
     assert await recording.take_heard() == ["a 1", "a 2"]
     assert recording.times == sorted(recording.times)
-    assert 2.4 * SECOND < recording.times[-1] <= 2.5 * SECOND
+    assert 2.4 * SECOND_NS < recording.times[-1] <= 2.5 * SECOND_NS
     recording.listen("/b")
     assert await recording.take_heard() == ["b 0"], "a late subscription receives the last message"
     recording.playback.set_speed(2)
@@ -227,13 +227,13 @@ async def test_seek_resets_listeners_before_publishing_state(recording: PlayedRe
     recording.listen("/a")
     recording.listen("/b")
     await recording.take_heard()
-    recording.playback.seek(START + 3 * SECOND)
-    recording.playback.seek(START + 10 * SECOND + 5)
+    recording.playback.seek(START_NS + 3 * SECOND_NS)
+    recording.playback.seek(START_NS + 10 * SECOND_NS + 5)
     assert await recording.take_heard() == ["reset", "b 8", "a 10"], "only the last of several seeks is executed"
-    assert recording.playback.position_ns == START + 10 * SECOND + 5
-    recording.playback.seek(START + 2 * SECOND)
+    assert recording.playback.position_ns == START_NS + 10 * SECOND_NS + 5
+    recording.playback.seek(START_NS + 2 * SECOND_NS)
     assert await recording.take_heard() == ["reset", "b 0", "a 2"]
-    assert recording.times[-1] == 2 * SECOND
+    assert recording.times[-1] == 2 * SECOND_NS
     recording.playback.play()
     await recording.clock.advance(1.1)
     assert await recording.take_heard() == ["a 3"]
@@ -245,10 +245,10 @@ async def test_step_moves_between_messages_of_subscribed_topics(recording: Playe
     recording.playback.step(forward=True)
     recording.playback.step(forward=True)
     assert await recording.take_heard() == ["b 4", "b 8"]
-    assert recording.playback.position_ns == START + 8 * SECOND
+    assert recording.playback.position_ns == START_NS + 8 * SECOND_NS
     recording.playback.step(forward=False)
     assert await recording.take_heard() == ["reset", "b 4"]
-    recording.playback.seek(START)
+    recording.playback.seek(START_NS)
     await recording.take_heard()
     recording.playback.step(forward=False)
     assert await recording.take_heard() == []
@@ -259,14 +259,14 @@ async def test_step_by_topic_publishes_messages_between(recording: PlayedRecordi
     await recording.take_heard()
     recording.playback.step(True, "/b")
     assert await recording.take_heard() == ["a 1", "a 2", "a 3", "a 4"], "messages of other topics are published too"
-    assert recording.playback.position_ns == START + 4 * SECOND
+    assert recording.playback.position_ns == START_NS + 4 * SECOND_NS
     recording.playback.step(False, "/tf_static")
     assert await recording.take_heard() == ["reset", "a 0"]
-    recording.playback.seek(START + 19 * SECOND)
+    recording.playback.seek(START_NS + 19 * SECOND_NS)
     await recording.take_heard()
     recording.playback.step(True, "/b")
     assert await recording.take_heard() == [], "there is no later message of the topic"
-    assert recording.playback.position_ns == START + 19 * SECOND
+    assert recording.playback.position_ns == START_NS + 19 * SECOND_NS
 
 
 async def test_step_over_too_many_messages_becomes_seek(
@@ -277,15 +277,15 @@ async def test_step_over_too_many_messages_becomes_seek(
     await recording.take_heard()
     recording.playback.step(True, "/b")
     assert (await recording.take_heard())[-2:] == ["reset", "a 4"]
-    assert recording.playback.position_ns == START + 4 * SECOND
+    assert recording.playback.position_ns == START_NS + 4 * SECOND_NS
 
 
 async def test_step_back_without_subscriptions_keeps_position(recording: PlayedRecording) -> None:
-    recording.playback.seek(START + 8 * SECOND)
+    recording.playback.seek(START_NS + 8 * SECOND_NS)
     await recording.settle()
     recording.playback.step(forward=False)
     await recording.settle()
-    assert recording.playback.position_ns == START + 8 * SECOND
+    assert recording.playback.position_ns == START_NS + 8 * SECOND_NS
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
@@ -294,11 +294,11 @@ def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: 
     with BagWriter(tmp_path / "bag", storage) as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
         for stamp in (0, 59, 60, 180):
-            writer.write("/tf", START + stamp * SECOND, transform(f"{stamp}"))
+            writer.write("/tf", START_NS + stamp * SECOND_NS, transform(f"{stamp}"))
     with BagReader(tmp_path / "bag") as bag:
         for time_ns, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
-            assert [message[1] for message in bag.state_at(["/tf"], START + time_ns * SECOND)] == [
-                START + stamp * SECOND for stamp in stamps
+            assert [message[1] for message in bag.state_at(["/tf"], START_NS + time_ns * SECOND_NS)] == [
+                START_NS + stamp * SECOND_NS for stamp in stamps
             ]
 
 
@@ -311,7 +311,7 @@ def test_empty_recording_is_reported(tmp_path: Path) -> None:
 
 async def test_playback_stops_at_end_or_loops(recording: PlayedRecording) -> None:
     recording.listen("/b")
-    recording.playback.seek(START + 19 * SECOND)
+    recording.playback.seek(START_NS + 19 * SECOND_NS)
     await recording.take_heard()
     recording.playback.play()
     await recording.clock.advance(2.0)
@@ -323,7 +323,7 @@ async def test_playback_stops_at_end_or_loops(recording: PlayedRecording) -> Non
     assert (await recording.take_heard())[:2] == ["reset", "b 0"]
     assert recording.playback.playing
     await recording.clock.advance(20.0)
-    assert recording.playback.position_ns < START + 2 * SECOND, "playback has started again from the beginning"
+    assert recording.playback.position_ns < START_NS + 2 * SECOND_NS, "playback has started again from the beginning"
 
 
 async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Path) -> None:
@@ -331,15 +331,15 @@ async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Pat
     with BagWriter(path) as writer:
         writer.add_topic("/a", STRING, [DEFAULT_QOS])
         for number in range(5000):
-            writer.write("/a", START + number * 1000, text(str(number)))
+            writer.write("/a", START_NS + number * 1000, text(str(number)))
     recording = PlayedRecording(path)
     recording.listen("/a")
     await recording.take_heard()
     recording.playback.play()
     await recording.clock.advance(0.017)
-    assert recording.playback.position_ns == START + 1001 * 1000 - 1
+    assert recording.playback.position_ns == START_NS + 1001 * 1000 - 1
     await recording.clock.advance(0.1)
-    assert recording.playback.position_ns == START + 4999 * 1000
+    assert recording.playback.position_ns == START_NS + 4999 * 1000
     recording.playback.close()
     recording.bag.close()
     await recording.graph.close()
@@ -355,7 +355,7 @@ async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> 
     recording.listen("/a")
     recording.failures.clear()
     recording.playback.play()
-    recording.playback.seek(START + 12 * SECOND)
+    recording.playback.seek(START_NS + 12 * SECOND_NS)
     await recording.settle()
     assert [failure.diagnostics[0].code for failure in recording.failures] == ["BAG102"]
     assert not recording.playback.playing

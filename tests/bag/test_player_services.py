@@ -10,8 +10,8 @@ from linkwright.bag import BagReader, BagWriter, Player, PlayerServices, PlayOpt
 from linkwright.graph import DEFAULT_QOS, Graph, JumpClock
 from linkwright.messages import String, get_message, serialize
 
-SECOND = 1_000_000_000
-START = 1_700_000_000 * SECOND
+SECOND_NS = 1_000_000_000
+START = 1_700_000_000 * SECOND_NS
 
 Time = get_message("builtin_interfaces/msg/Time")
 
@@ -47,7 +47,7 @@ async def scene(clock, tmp_path: Path):
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
         for number in range(5):
-            writer.write("/chatter", START + number * SECOND, serialize(String(data=str(number))))
+            writer.write("/chatter", START + number * SECOND_NS, serialize(String(data=str(number))))
     graph = Graph(clock=clock)
     with BagReader(tmp_path / "bag") as bag:
         yield lambda **options: PlayerHarness(graph, bag, PlayOptions(**options))
@@ -123,7 +123,7 @@ async def test_loop_over_zero_duration_recording_does_not_block(clock, tmp_path)
 async def test_player_seek_continues_from_given_time(scene, clock, paused):
     scene = scene(paused=paused)
     await clock.advance(0.5)
-    seek_s = START // SECOND + 3
+    seek_s = START // SECOND_NS + 3
     assert (await scene.call("seek", time=Time(sec=seek_s))).success
     if paused:
         await scene.call("resume")

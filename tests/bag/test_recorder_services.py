@@ -11,7 +11,7 @@ from linkwright.bag import BagReader, BagWriter, Recorder, RecorderServices, Top
 from linkwright.graph import DEFAULT_QOS, Graph, JumpClock
 from linkwright.messages import String, deserialize, get_message
 
-START = 1_700_000_000_000_000_000
+START_NS = 1_700_000_000_000_000_000
 
 
 class RecorderHarness:
@@ -52,7 +52,7 @@ class RecorderHarness:
 
 @pytest.fixture
 async def scene(tmp_path: Path):
-    graph = Graph(clock=JumpClock(START))
+    graph = Graph(clock=JumpClock(START_NS))
     yield lambda **options: RecorderHarness(graph, tmp_path / "bag", **options)
     await graph.close()
 

@@ -16,13 +16,13 @@ from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS, Grap
 from linkwright.graph.endpoints.service import ServiceIntrospectionState
 from linkwright.messages import String, deserialize, get_message, serialize, type_hash
 
-START = 1_700_000_000_000_000_000
-SECOND = 1_000_000_000
+START_NS = 1_700_000_000_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 @pytest.fixture
 def clock() -> JumpClock:
-    return JumpClock(START)
+    return JumpClock(START_NS)
 
 
 @pytest.fixture
@@ -52,7 +52,12 @@ async def test_recorder_writes_topics_with_message_times(graph: Graph, clock: Ju
     recorder.close()
     assert recorder.message_count == 4
     with BagReader(tmp_path / "bag") as bag:
-        assert [stamp - START for _, stamp, _ in bag.messages()] == [0, SECOND // 4, SECOND // 2, SECOND * 3 // 4]
+        assert [stamp - START_NS for _, stamp, _ in bag.messages()] == [
+            0,
+            SECOND_NS // 4,
+            SECOND_NS // 2,
+            SECOND_NS * 3 // 4,
+        ]
     assert texts(tmp_path / "bag") == ["0", "1", "2", "3"]
 
 
@@ -160,7 +165,7 @@ def record(folder: Path, times: list[float]) -> BagReader:
     with BagWriter(folder / "bag") as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
         for number, seconds in enumerate(times):
-            writer.write("/chatter", round(seconds * SECOND) + SECOND, serialize(String(data=str(number))))
+            writer.write("/chatter", round(seconds * SECOND_NS) + SECOND_NS, serialize(String(data=str(number))))
     return BagReader(folder / "bag")
 
 
@@ -173,7 +178,7 @@ class ChatterRecorder:
         graph.create_node("listener").create_subscription(String, topic, self._hear, DEFAULT_QOS)
 
     def _hear(self, message: String) -> None:
-        self.heard.append((round(self._clock.steady_ns() / SECOND, 3), message.data))
+        self.heard.append((round(self._clock.steady_ns() / SECOND_NS, 3), message.data))
 
 
 @pytest.fixture
@@ -267,7 +272,7 @@ async def test_player_publishes_recording_time_on_clock(
     with record(tmp_path, [0, 2]) as bag:
         Player(player_node, bag, PlayOptions(clock_hz=4, rate=2)).start()
         await clock.advance(1)
-    assert clocks == [SECOND * 3 // 2, SECOND * 2, SECOND * 5 // 2, SECOND * 3]
+    assert clocks == [SECOND_NS * 3 // 2, SECOND_NS * 2, SECOND_NS * 5 // 2, SECOND_NS * 3]
 
 
 async def test_unknown_topic_is_reported_before_playing(player_node: Node, tmp_path: Path) -> None:
@@ -292,7 +297,7 @@ def record_of_a_foreign_type(path: Path, package: str, storage: StoragePlugin, *
             samples = [sample(kind=1, label="topsoil")] * number
             message = probe(depth=number / 2, samples=samples, header=header(stamp(sec=number, nanosec=0), "drill"))
             data = store.serialize_cdr(message, probe.__msgtype__)
-            writer.write(connection, SECOND * (number + 1), data)
+            writer.write(connection, SECOND_NS * (number + 1), data)
 
 
 @pytest.mark.parametrize("storage", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
@@ -365,7 +370,7 @@ async def test_player_selects_topics_by_regular_expression(
 async def test_player_stops_at_given_time(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
     listener = ChatterRecorder(graph, clock)
     with record(tmp_path, [0, 1, 2]) as bag:
-        player = Player(player_node, bag, PlayOptions(until_ns=round(2.5 * SECOND), duration=9.0))
+        player = Player(player_node, bag, PlayOptions(until_ns=round(2.5 * SECOND_NS), duration=9.0))
         player.start()
         await clock.advance(5)
         assert player.finished

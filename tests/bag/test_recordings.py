@@ -32,7 +32,7 @@ from linkwright.graph import (
 )
 from linkwright.messages import JointState, String, deserialize, serialize
 
-START = 1_700_000_000_000_000_000
+START_NS = 1_700_000_000_000_000_000
 
 
 def write(folder: Path, storage: str = "mcap", count: int = 3, name: str = "bag", **options: bool) -> Path:
@@ -42,8 +42,8 @@ def write(folder: Path, storage: str = "mcap", count: int = 3, name: str = "bag"
         writer.add_topic("/chatter", "std_msgs/msg/String", [DESCRIPTION_QOS])
         writer.add_topic("/joint_states", "sensor_msgs/msg/JointState", [DEFAULT_QOS, SENSOR_DATA_QOS])
         for number in range(count):
-            writer.write("/chatter", START + number * 1_000_000_000, serialize(String(data=f"number {number}")))
-        writer.write("/joint_states", START + 500_000_000, serialize(JointState(name=["a"], position=[0.5])))
+            writer.write("/chatter", START_NS + number * 1_000_000_000, serialize(String(data=f"number {number}")))
+        writer.write("/joint_states", START_NS + 500_000_000, serialize(JointState(name=["a"], position=[0.5])))
     return path
 
 
@@ -62,7 +62,7 @@ def test_metadata_contradicting_files_hides_no_messages(tmp_path: Path, storage:
     path.write_text(yaml.safe_dump(document), encoding="utf-8")
     with BagReader(path.parent) as bag:
         assert len(list(bag.messages())) == 4
-        assert bag.state_at(["/joint_states"], START + 10**9)
+        assert bag.state_at(["/joint_states"], START_NS + 10**9)
 
 
 @pytest.mark.parametrize("storage", STORAGES)
@@ -75,9 +75,9 @@ def test_bag_reader_returns_messages_ordered_by_time(tmp_path: Path, storage: st
         ]
         assert bag.topics[0].offered_qos == (DESCRIPTION_QOS,)
         assert bag.topics[1].offered_qos == (DEFAULT_QOS, SENSOR_DATA_QOS)
-        assert (bag.start_ns, bag.end_ns) == (START, START + 2_000_000_000)
+        assert (bag.start_ns, bag.end_ns) == (START_NS, START_NS + 2_000_000_000)
         messages = list(bag.messages())
-    assert [(topic, stamp - START) for topic, stamp, _ in messages] == [
+    assert [(topic, stamp - START_NS) for topic, stamp, _ in messages] == [
         ("/chatter", 0),
         ("/joint_states", 500_000_000),
         ("/chatter", 1_000_000_000),
@@ -114,7 +114,7 @@ def test_compressed_recording_is_smaller_with_equal_messages(tmp_path: Path) -> 
 
 def test_messages_can_be_filtered_by_topic_and_start_time(tmp_path: Path) -> None:
     with BagReader(write(tmp_path)) as bag:
-        assert [stamp - START for _, stamp, _ in bag.messages(["/chatter"], START + 1)] == [
+        assert [stamp - START_NS for _, stamp, _ in bag.messages(["/chatter"], START_NS + 1)] == [
             1_000_000_000,
             2_000_000_000,
         ]
@@ -130,7 +130,7 @@ from linkwright.messages import String, serialize
 writer = BagWriter({str(path)!r}, **{options!r})
 writer.add_topic("/chatter", "std_msgs/msg/String")
 for number in range(5):
-    writer.write("/chatter", {START} + number, serialize(String(data=str(number))))
+    writer.write("/chatter", {START_NS} + number, serialize(String(data=str(number))))
 writer.flush()
 os._exit(1)
 """
@@ -163,10 +163,10 @@ def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
             writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
             if number == 1:
                 writer.add_topic("/other", "std_msgs/msg/String", [DEFAULT_QOS])
-                writer.write("/other", START, serialize(String(data="early")))
+                writer.write("/other", START_NS, serialize(String(data="early")))
             for step in range(3):
                 # The last message of a file is later than the first message of the next file.
-                stamp = START + number * 1_000_000_000 + step * 400_000_000
+                stamp = START_NS + number * 1_000_000_000 + step * 400_000_000
                 writer.write("/chatter", stamp, serialize(String(data=f"{number}.{step}")))
         (file,) = (path for path in (folder / f"part{number}").iterdir() if path.name != "metadata.yaml")
         files.append(folder / "drive" / f"{name}{file.suffix}")
@@ -184,13 +184,13 @@ def test_numbered_files_without_metadata_form_one_recording(tmp_path: Path, stor
     files = parts(tmp_path, storage, ["drive_10", "drive_9", "drive_11"])
     with BagReader(tmp_path / "drive") as bag:
         assert {topic.name: topic.count for topic in bag.topics} == {"/chatter": 9, "/other": 1}
-        assert (bag.start_ns, bag.end_ns) == (START, START + 2_800_000_000)
+        assert (bag.start_ns, bag.end_ns) == (START_NS, START_NS + 2_800_000_000)
         messages = list(bag.messages())
         assert texts(messages) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
         assert [stamp for _, stamp, _ in messages] == sorted(stamp for _, stamp, _ in messages)
-        assert texts(bag.messages(["/chatter"], START + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
-        assert texts(bag.state_at(["/chatter", "/other"], START + 1_900_000_000)) == ["early", "1.2"]
-        assert bag.time_before(["/chatter"], START + 1_000_000_000) == START + 800_000_000
+        assert texts(bag.messages(["/chatter"], START_NS + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
+        assert texts(bag.state_at(["/chatter", "/other"], START_NS + 1_900_000_000)) == ["early", "1.2"]
+        assert bag.time_before(["/chatter"], START_NS + 1_000_000_000) == START_NS + 800_000_000
         assert sum(bag.counts(10)["/chatter"]) == 9
         assert sorted(bag.files) == sorted(files)
         assert summarize_bag(bag).count("Type: std_msgs/msg/String | Count: 9") == 1
@@ -289,14 +289,14 @@ def test_truncated_file_gives_complete_chunks(tmp_path: Path, cut: int, left: in
     with BagWriter(path) as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String")
         for number in range(300):
-            writer.write("/chatter", START + number, serialize(String(data=f"number {number}")))
+            writer.write("/chatter", START_NS + number, serialize(String(data=f"number {number}")))
             if number % 100 == 99:
                 writer.flush()
     file = path / "bag_0.mcap"
     data = file.read_bytes()
     file.write_bytes(data[:-cut])
     with BagReader(path) as bag:
-        stamps = [stamp - START for _, stamp, _ in bag.messages()]
+        stamps = [stamp - START_NS for _, stamp, _ in bag.messages()]
         assert [finding.code for finding in bag.findings] == ["BAG109"]
     assert stamps == list(range(left))
 

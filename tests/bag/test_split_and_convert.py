@@ -16,8 +16,8 @@ from linkwright.bag.writing import COMPRESSIONS, STORAGES
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import String, serialize
 
-SECOND = 1_000_000_000
-START = 1_700_000_000 * SECOND
+SECOND_NS = 1_000_000_000
+START = 1_700_000_000 * SECOND_NS
 FORMS = [(storage, form) for storage in STORAGES for form in COMPRESSIONS if (storage, form) != ("sqlite3", "storage")]
 
 
@@ -26,7 +26,7 @@ def write(path: Path, storage: str = "mcap", *, topic: str = "/words", count: in
     with BagWriter(path, storage, **options) as writer:
         writer.add_topic(topic, "std_msgs/msg/String")
         for number in range(count):
-            writer.write(topic, START + number * SECOND // 10, text(number))
+            writer.write(topic, START + number * SECOND_NS // 10, text(number))
     return path
 
 
@@ -46,7 +46,7 @@ def content(path: Path) -> list[tuple[str, int, bytes]]:
 
 
 def expected_messages(topic: str = "/words", count: int = 40) -> list[tuple[str, int, bytes]]:
-    return [(topic, START + number * SECOND // 10, text(number)) for number in range(count)]
+    return [(topic, START + number * SECOND_NS // 10, text(number)) for number in range(count)]
 
 
 @pytest.mark.parametrize(("storage", "compression"), FORMS)
@@ -61,7 +61,7 @@ def test_recording_splits_by_duration_and_metadata_lists_files(tmp_path, storage
         zip(names, (11, 11, 11, 7), strict=True)
     )
     assert result["message_count"] == result["topics_with_message_count"][0]["message_count"] == 40
-    assert result["duration"]["nanoseconds"] == 39 * SECOND // 10
+    assert result["duration"]["nanoseconds"] == 39 * SECOND_NS // 10
     assert content(folder) == expected_messages()
 
 
@@ -89,9 +89,9 @@ def test_snapshot_writes_last_messages_within_size_limit(tmp_path) -> None:
     with BagWriter(tmp_path / "drive", snapshot_size=3 * len(text(0))) as writer:
         writer.add_topic("/words", "std_msgs/msg/String")
         for number in range(8):
-            writer.write("/words", START + number * SECOND // 10, text(number))
+            writer.write("/words", START + number * SECOND_NS // 10, text(number))
         assert writer.take_snapshot()
-        writer.write("/words", START + SECOND, text(9))
+        writer.write("/words", START + SECOND_NS, text(9))
     assert content(tmp_path / "drive") == expected_messages(count=8)[5:]
 
 
@@ -140,7 +140,7 @@ def test_rewrite_merges_by_time_and_splits_by_topics(tmp_path) -> None:
             tmp_path,
             {"uri": str(tmp_path / "all"), "storage_id": "sqlite3", "all": True, "max_bagfile_duration": 2},
             {"uri": str(tmp_path / "some"), "topics": ["/others"], "compression_mode": "FILE"},
-            {"uri": str(tmp_path / "part"), "regex": "wor", "start_time_ns": START + 2 * SECOND},
+            {"uri": str(tmp_path / "part"), "regex": "wor", "start_time_ns": START + 2 * SECOND_NS},
         ),
     )
     assert [folder.name for folder in folders] == ["all", "some", "part"]

@@ -26,13 +26,13 @@ from linkwright.wire.zenoh.session import build_config, open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from tests.bridge.conftest import spin_all
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 WAYS = [("dds", "zenoh"), ("zenoh", "dds")]
 AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
-CALLS = 50
+CALL_COUNT = 50
 Fibonacci = get_interface("example_interfaces/action/Fibonacci")
 
 
@@ -172,7 +172,7 @@ def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, so
 
     A busy machine needs over a second to acknowledge all.
     """
-    monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", SECONDS)
+    monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", TIMEOUT_S)
     networks.bridge()
     remote, local = networks.make(source)("remote"), networks.make(target)("local")
     received = listen(local, "chatter", EVERYTHING)
@@ -209,12 +209,12 @@ def test_service_responses_reach_the_client_that_sent_the_request(networks, serv
             if waiting[index] is not None and waiting[index].done():
                 answers[index].append(waiting[index].result().sum)
                 waiting[index] = None
-            if waiting[index] is None and len(answers[index]) < CALLS:
+            if waiting[index] is None and len(answers[index]) < CALL_COUNT:
                 waiting[index] = client.call_async(AddTwoInts.Request(a=1000 * index, b=len(answers[index])))
-        return all(len(answer) == CALLS for answer in answers)
+        return all(len(answer) == CALL_COUNT for answer in answers)
 
     spin_all(all_answered, remote, *asking)
-    assert answers == [[1000 * index + number for number in range(CALLS)] for index in range(3)]
+    assert answers == [[1000 * index + number for number in range(CALL_COUNT)] for index in range(3)]
     remote.close()
     spin_all(lambda: not any(client.service_is_ready() for client in clients), *asking)
 
@@ -261,7 +261,7 @@ def test_outlet_queues_messages_while_publish_blocks():
     may_continue, published, failures = threading.Event(), [], []
 
     def publish(data: bytes) -> None:
-        may_continue.wait(SECONDS)
+        may_continue.wait(TIMEOUT_S)
         published.append(data)
 
     outlet = Outlet(publish, failures.append)

@@ -18,7 +18,7 @@ from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
 from linkwright.nodes.options import EXECUTABLES, NodeOptions
 from tests.leaving import UPGRADE, request_and_reset
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 V1 = ("foxglove.websocket.v1",)
 
@@ -30,7 +30,7 @@ class Foxglove:
         self.socket = socket_
 
     async def next(self):
-        message = await self.socket.receive(timeout=SECONDS)
+        message = await self.socket.receive(timeout=TIMEOUT_S)
         if message.type is aiohttp.WSMsgType.TEXT:
             return json.loads(message.data)
         assert message.type is aiohttp.WSMsgType.BINARY, message
@@ -353,7 +353,7 @@ async def test_connection_from_other_origin_is_rejected():
 
 async def test_connection_without_foxglove_subprotocol_is_closed():
     async with bridge_setup() as setup, setup.client(()) as client:
-        message = await client.socket.receive(timeout=SECONDS)
+        message = await client.socket.receive(timeout=TIMEOUT_S)
         assert message.type is aiohttp.WSMsgType.CLOSE
         assert client.socket.close_code == 1002
 

@@ -20,11 +20,11 @@ from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from tests import forked
 from tests.browser.failure_report import describe_pages
-from tests.browser.live import POLL_PERIOD, LiveViewer, configuration
+from tests.browser.live import POLL_PERIOD_S, LiveViewer, configuration
 from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
 
-SECONDS = 60.0
+TIMEOUT_S = 60.0
 """The tests' time limit. It is long, because a busy machine without a GPU may need seconds for a frame."""
 
 Value = TypeVar("Value")
@@ -114,7 +114,7 @@ class Program:
     output: list[str] = field(default_factory=list)
     _lines: queue.Queue[str | None] = field(default_factory=queue.Queue)
 
-    def wait_for(self, pattern: str, seconds: float = SECONDS) -> re.Match[str]:
+    def wait_for(self, pattern: str, seconds: float = TIMEOUT_S) -> re.Match[str]:
         """Read until a line matches; fail with all output after the time limit."""
         deadline = time.monotonic() + seconds
         while True:
@@ -127,7 +127,7 @@ class Program:
             if time.monotonic() >= deadline:
                 pytest.fail(f"no line like {pattern!r} within {seconds} s:\n{''.join(self.output)}")
 
-    def interrupt(self, seconds: float = SECONDS) -> int:
+    def interrupt(self, seconds: float = TIMEOUT_S) -> int:
         """Interrupt the command as Ctrl-C does, and return its exit status."""
         self.process.send_signal(signal.SIGINT)
         return self.process.wait(timeout=seconds)
@@ -181,8 +181,8 @@ def program_starter(start_program: Callable[..., forked.Program], folder: Path) 
     for program, reader in programs:
         if program.process.poll() is None:
             program.process.terminate()
-            program.process.wait(timeout=SECONDS)
-        reader.join(timeout=SECONDS)
+            program.process.wait(timeout=TIMEOUT_S)
+        reader.join(timeout=TIMEOUT_S)
         assert program.process.stdout is not None
         program.process.stdout.close()
 
@@ -220,14 +220,14 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]}, locale="en-US", color_scheme=theme
         )
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
         page.goto(program.url)
         if wait:
-            page.wait_for_function("window.linkwright?.ready === true", polling=1000 * POLL_PERIOD)
+            page.wait_for_function("window.linkwright?.ready === true", polling=1000 * POLL_PERIOD_S)
         return page
 
     yield open_url
@@ -255,25 +255,25 @@ def until(page: Page, condition: str) -> None:
     """Wait until a JavaScript condition over `lw` (window.linkwright) holds."""
     page.wait_for_function(
         f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}",
-        timeout=1000 * SECONDS,
-        polling=1000 * POLL_PERIOD,
+        timeout=1000 * TIMEOUT_S,
+        polling=1000 * POLL_PERIOD_S,
     )
 
 
 def wait_until_equal(read: Callable[[], Value], expected: Value) -> None:
     """Read a value repeatedly until it is the expected one; fail with the last value."""
-    limit = time.monotonic() + SECONDS
+    limit = time.monotonic() + TIMEOUT_S
     while (value := read()) != expected and time.monotonic() < limit:
-        time.sleep(POLL_PERIOD)
+        time.sleep(POLL_PERIOD_S)
     assert value == expected
 
 
 def wait_two_seconds(page: Page) -> None:
     """Wait until the clock of the page's Time panel has advanced by two seconds."""
     elapsed = page.locator(".time-panel .figure").last
-    wait_until(elapsed.inner_text, SECONDS, pause=POLL_PERIOD)
+    wait_until(elapsed.inner_text, TIMEOUT_S, pause=POLL_PERIOD_S)
     start = float(elapsed.inner_text())
-    wait_until(lambda: float(elapsed.inner_text()) >= start + 2, SECONDS, pause=POLL_PERIOD)
+    wait_until(lambda: float(elapsed.inner_text()) >= start + 2, TIMEOUT_S, pause=POLL_PERIOD_S)
 
 
 def count_frames(page: Page) -> int:

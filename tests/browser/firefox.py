@@ -23,8 +23,8 @@ from typing import Any, TypeVar
 import aiohttp
 from PIL import Image
 
-from tests.browser.live import POLL_PERIOD
-from tests.waiting import SECONDS, wait_until
+from tests.browser.live import POLL_PERIOD_S
+from tests.waiting import TIMEOUT_S, wait_until
 
 Result = TypeVar("Result")
 
@@ -90,7 +90,7 @@ def _run_logged(command: list[str], environment: dict[str, str], log: Path) -> I
             yield wait_for_line
         finally:
             process.terminate()
-            process.wait(timeout=SECONDS)
+            process.wait(timeout=TIMEOUT_S)
 
 
 class Firefox:
@@ -122,7 +122,7 @@ class Firefox:
         return self._run(self._call(method, parameters))
 
     def _run(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
-        return asyncio.run_coroutine_threadsafe(asyncio.wait_for(coroutine, SECONDS), self._loop).result()
+        return asyncio.run_coroutine_threadsafe(asyncio.wait_for(coroutine, TIMEOUT_S), self._loop).result()
 
     async def _call(self, method: str, parameters: dict[str, Any]) -> dict[str, Any]:
         self._number += 1
@@ -155,7 +155,7 @@ class Firefox:
     def until(self, condition: str) -> None:
         """Wait until a JavaScript condition over ``lw`` (window.linkwright) holds."""
         expression = f"((lw) => Boolean(lw && ({condition})))(window.linkwright)"
-        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=POLL_PERIOD)
+        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=POLL_PERIOD_S)
 
     def press(self, *keys: str) -> None:
         """Press keys one after another. WebDriver names them by a letter, or by a code such as ``\\ue014`` (right)."""
@@ -203,5 +203,5 @@ class Firefox:
         self._run(self._socket.close())
         self._run(self._session.close())
         self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join(SECONDS)
+        self._thread.join(TIMEOUT_S)
         self._loop.close()

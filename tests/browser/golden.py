@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.browser.mesh_writers import SIZE, dae, glb, obj, stl_binary, stl_text
+from tests.browser.mesh_writers import BOX_SIZE_M, dae, glb, obj, stl_binary, stl_text
 
 BLUE = "<color>0 0 1 1</color>"
 CLEAR = "<transparent><color>1 1 1 1</color></transparent><transparency><float>0.2</float></transparency>"
@@ -14,7 +14,7 @@ NESTED = (
     "<node><scale>2 1 1</scale><node><translate>1 0 0</translate>GEOMETRY</node></node></node>"
 )
 
-STANDING = ((0.0, 0.0, 0.0), SIZE)
+STANDING = ((0.0, 0.0, 0.0), BOX_SIZE_M)
 GREEN = '<material name="green"><color rgba="0 0.8 0.2 1"/></material>'
 HALF = '<material name="half"><color rgba="0 0.8 0.2 0.5"/></material>'
 

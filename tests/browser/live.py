@@ -18,7 +18,7 @@ from tests.waiting import wait_until
 
 Result = TypeVar("Result")
 
-POLL_PERIOD = 0.05
+POLL_PERIOD_S = 0.05
 """The pause in seconds between two checks of a browser; each check costs four processes some milliseconds."""
 
 FILE = """\
@@ -115,7 +115,7 @@ class LiveViewer:
             expression = "([number]) => window.linkwright?.received === number && window.linkwright.settled"
             return number is not None and page.evaluate(expression, [number]) and self.run(last_number) == number
 
-        wait_until(is_settled, 60, pause=POLL_PERIOD)
+        wait_until(is_settled, 60, pause=POLL_PERIOD_S)
 
     def status(self, name: str) -> dict[str, tuple[str, str]]:
         """Return the status rows of a display: name -> level, text."""

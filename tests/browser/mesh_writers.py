@@ -6,7 +6,7 @@ import json
 import struct
 import zlib
 
-SIZE = (0.1, 0.2, 0.3)
+BOX_SIZE_M = (0.1, 0.2, 0.3)
 TRIANGLES = (
     (0, 2, 1),
     (1, 2, 3),
@@ -26,7 +26,8 @@ TRIANGLES = (
 def corners(scale: float = 1.0) -> list[tuple[float, float, float]]:
     """Return the corners; x changes fastest."""
     return [
-        (SIZE[0] * scale * (i & 1), SIZE[1] * scale * (i >> 1 & 1), SIZE[2] * scale * (i >> 2 & 1)) for i in range(8)
+        (BOX_SIZE_M[0] * scale * (i & 1), BOX_SIZE_M[1] * scale * (i >> 1 & 1), BOX_SIZE_M[2] * scale * (i >> 2 & 1))
+        for i in range(8)
     ]
 
 
@@ -121,7 +122,14 @@ def glb(*, color: tuple[float, ...] | None = None, rotation: tuple[float, ...] |
         "nodes": [node],
         "meshes": [{"primitives": [primitive]}],
         "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": list(SIZE)},
+            {
+                "bufferView": 0,
+                "componentType": 5126,
+                "count": 8,
+                "type": "VEC3",
+                "min": [0, 0, 0],
+                "max": list(BOX_SIZE_M),
+            },
             {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
         ],
         "bufferViews": [

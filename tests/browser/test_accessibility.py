@@ -14,7 +14,7 @@ from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 from tests.browser.arm import write_arm
 from tests.browser.axe import violations
-from tests.browser.conftest import SECONDS, state, until, wait_until_equal
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.test_modeling import open_modeling
 from tests.browser.test_overlays import unfold
@@ -197,7 +197,7 @@ def test_world_modeling_passes_axe(start, open_page, tmp_path: Path):
 def test_token_form_and_page_without_webgl_pass_axe(live: Callable[..., LiveViewer], browser: Browser):
     viewer = live(configuration(DISPLAYS))
     with browser.new_context(locale="en-US") as context:
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         context.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
         page = context.new_page()
         page.goto(viewer.url.partition("?")[0])
@@ -214,7 +214,7 @@ def test_exported_page_passes_axe(browser: Browser, tmp_path: Path):
         [sys.executable, "-m", "linkwright", "export", str(exported_file), str(write_arm(tmp_path))], check=True
     )
     with browser.new_context(locale="en-US", bypass_csp=True) as context:
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         page = context.new_page()
         page.goto(exported_file.as_uri())
         page.get_by_role("slider").first.wait_for()

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from tests.browser.conftest import SECONDS, Start, until, wait_until_equal
+from tests.browser.conftest import TIMEOUT_S, Start, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -81,7 +81,7 @@ def test_control_texts_are_not_clipped(start: Start, browser: Browser, tmp_path,
     (tmp_path / "two.urdf").write_text(ROBOT)
     program = start("view", "two.urdf")
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale=locale)
-    context.set_default_timeout(1000 * SECONDS)
+    context.set_default_timeout(1000 * TIMEOUT_S)
     page = context.new_page()
     page.goto(program.url)
     page.wait_for_function("window.linkwright?.ready === true")

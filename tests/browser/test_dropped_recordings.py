@@ -12,7 +12,7 @@ from linkwright.bag import BagWriter
 from linkwright.graph import DEFAULT_QOS
 from linkwright.messages import get_message, serialize
 from tests.browser.conftest import Program, state, until
-from tests.browser.test_timeline import LENGTH, SECOND, START, seek, wait_for_second, write_recording
+from tests.browser.test_timeline import LENGTH_S, SECOND_NS, START_S, seek, wait_for_second, write_recording
 
 pytestmark = pytest.mark.browser
 
@@ -53,7 +53,7 @@ def test_dropped_mcap_file_plays_and_back_returns_to_robot(page: Page, tmp_path:
     file = write_recording(tmp_path)
     drop(page, file)
     wait_and_pause(page, file.name)
-    assert state(page, "timeline")["length"] == LENGTH
+    assert state(page, "timeline")["length"] == LENGTH_S
     for seconds in (20.55, 4.55):
         seek(page, seconds)
         wait_for_second(page, int(seconds))
@@ -69,7 +69,7 @@ def test_dropped_sqlite_folder_plays_and_next_recording_replaces_it(page: Page, 
         number = get_message("std_msgs/msg/Float64")
         writer.add_topic("/number", "std_msgs/msg/Float64", [DEFAULT_QOS])
         for second in range(5):
-            writer.write("/number", (START + second) * SECOND, serialize(number(data=float(second))))
+            writer.write("/number", (START_S + second) * SECOND_NS, serialize(number(data=float(second))))
     drop(page, folder)
     until(page, "lw.timeline?.name === 'numbers_0.db3' && lw.timeline.length === 4")
     file = write_recording(tmp_path)

@@ -13,7 +13,7 @@ import pytest
 from tests.browser import firefox
 from tests.browser.arm import write_arm
 from tests.browser.firefox import Firefox
-from tests.browser.live import POLL_PERIOD
+from tests.browser.live import POLL_PERIOD_S
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -67,7 +67,7 @@ def test_firefox_draws_and_moves_robot(start, launch, tmp_path):
         reds = sum(count for count, (r, g, b) in image.getcolors(1 << 24) if r > 80 and r > 3 * max(g, b))
         return reds / (image.width * image.height)
 
-    wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=POLL_PERIOD)
+    wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=POLL_PERIOD_S)
     # The arrow keys move the focus between tabs.
     browser.evaluate("document.querySelector('[data-tab-panel-id=displays]').focus()")
     browser.press(RIGHT, ENTER)
@@ -131,7 +131,7 @@ def test_firefox_drags_handle(start, launch, tmp_path):
         samples.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
         return len(samples) > 5 and samples[-1] == samples[-5]
 
-    wait_until(is_still, pause=POLL_PERIOD)
+    wait_until(is_still, pause=POLL_PERIOD_S)
     handle = samples[-1]
     canvas = browser.evaluate("document.querySelector('.canvas-box canvas').getBoundingClientRect()")
     browser.drag(canvas["x"] + handle["x"], canvas["y"] + handle["y"], 0, -60)

@@ -20,7 +20,7 @@ from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
-SCALE = 50.0
+PIXELS_PER_METER = 50.0
 """The scale of the TopDownOrtho view in pixels per meter, which gives the position of each pixel."""
 BACKGROUND = (48, 48, 48)
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
@@ -32,7 +32,7 @@ def entry(cls: str, **properties: Any) -> dict[str, Any]:
 
 
 def config(*displays: dict[str, Any]) -> str:
-    view = {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": SCALE}
+    view = {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": PIXELS_PER_METER}
     options = {"Fixed Frame": "base", "Background Color": "48; 48; 48", "Frame Rate": 30}
     manager = {"Displays": list(displays), "Global Options": options, "Views": {"Current": view, "Saved": None}}
     return yaml.safe_dump({"Visualization Manager": manager})
@@ -42,7 +42,7 @@ def colors_from_above(page: Any, *points: tuple[float, float]) -> list[Color]:
     """Return the colors at points of the fixed frame, as seen from above."""
     box = page.locator(".canvas-box canvas").bounding_box()
     x0, y0 = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    return colors_at(page, *((x0 + x * SCALE, y0 - y * SCALE) for x, y in points))
+    return colors_at(page, *((x0 + x * PIXELS_PER_METER, y0 - y * PIXELS_PER_METER) for x, y in points))
 
 
 def drawing_of(page: Any, display: int = 0) -> dict[str, Any]:

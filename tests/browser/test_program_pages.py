@@ -12,7 +12,7 @@ from playwright.sync_api import Frame, Page
 from linkwright.learning.course import find_course
 from tests.browser.axe import violations
 from tests.browser.conftest import until, wait_until_equal
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 pytestmark = [
     pytest.mark.browser,
@@ -41,7 +41,7 @@ def frames_of(page: Page) -> list[Frame]:
     page.wait_for_selector(f"{FRAMES}:visible")
     frames = [frame for handle in page.locator(FRAMES).element_handles() if (frame := handle.content_frame())]
     for frame in frames:
-        frame.wait_for_function("window.linkwright?.ready === true", timeout=1000 * SECONDS)
+        frame.wait_for_function("window.linkwright?.ready === true", timeout=1000 * TIMEOUT_S)
     return frames
 
 

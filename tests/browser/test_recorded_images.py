@@ -18,7 +18,7 @@ from tests.images.test_images import image
 
 pytestmark = pytest.mark.browser
 
-START, SECOND = 1_700_000_000_000_000_000, 1_000_000_000
+START_NS, SECOND_NS = 1_700_000_000_000_000_000, 1_000_000_000
 CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
 LaserScan = get_message("sensor_msgs/msg/LaserScan")
 
@@ -41,7 +41,7 @@ def write_recording(path: Path, *, scans: bool) -> Path:
             writer.add_topic(name, message.TYPE_NAME, [DEFAULT_QOS])
         for second in range(5):
             for name, message in topics.items():
-                writer.write(name, START + second * SECOND, serialize(message))
+                writer.write(name, START_NS + second * SECOND_NS, serialize(message))
     return path
 
 

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 
-from tests.browser.conftest import SECONDS, until
+from tests.browser.conftest import TIMEOUT_S, until
 from tests.browser.live import configuration
 from tests.page.test_slow_lines import cloud, image
 from tests.viewer.throttle import slow_line
@@ -16,7 +16,7 @@ from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
-_SQUARE = 8
+_SQUARE_PX = 8
 
 SENSES = configuration(
     """
@@ -37,8 +37,8 @@ SENSES = configuration(
 def noise(width: int, height: int) -> Any:
     """Return an image of squares of random colors: hard to compress, also at the size of its panel."""
     message = image(width, height)
-    squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE, width // _SQUARE, 3), np.uint8)
-    message.data = squares.repeat(_SQUARE, axis=0).repeat(_SQUARE, axis=1).tobytes()
+    squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE_PX, width // _SQUARE_PX, 3), np.uint8)
+    message.data = squares.repeat(_SQUARE_PX, axis=0).repeat(_SQUARE_PX, axis=1).tobytes()
     return message
 
 
@@ -99,7 +99,7 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
             and shown_points["width"] == 1280
         )
 
-    wait_until(is_thinned, SECONDS, lambda: facts)
+    wait_until(is_thinned, TIMEOUT_S, lambda: facts)
     # Without other traffic, all data arrives.
     until(page, "lw.displays[0].drawn.points === 50000 && document.querySelector('.line-notice').hidden")
     viewer.run(lambda: line.__aexit__(None, None, None))

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from tests.browser.conftest import SECONDS, state, until, wait_until_equal
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -30,7 +30,7 @@ def port() -> str:
 def context(browser):
     """Return a browser whose console may show connection errors."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    context.set_default_timeout(1000 * SECONDS)
+    context.set_default_timeout(1000 * TIMEOUT_S)
     yield context
     context.close()
 

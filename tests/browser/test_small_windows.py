@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, Page
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import get_message
-from tests.browser.conftest import SECONDS, state, until, wait_until_equal
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 
 pytestmark = pytest.mark.browser
@@ -34,7 +34,7 @@ def open_window_of_size(browser: Browser, live: Callable[..., LiveViewer]) -> It
 
     def open_window(width: int, height: int, locale: str = "en-US") -> Page:
         context = browser.new_context(viewport={"width": width, "height": height}, locale=locale)
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         contexts.append(context)
         page = context.new_page()
         page.goto(viewer.url)

@@ -16,11 +16,11 @@ from tests.images.test_images import image
 
 pytestmark = pytest.mark.browser
 
-START = 1_700_000_000
-SECOND = 1_000_000_000
+START_S = 1_700_000_000
+SECOND_NS = 1_000_000_000
 FLOAT = get_message("std_msgs/msg/Float64")
 
-LENGTH = 30
+LENGTH_S = 30
 """The length in seconds. Each topic has ten messages a second; number, frame and image identify the second."""
 
 
@@ -30,8 +30,8 @@ def write_recording(folder: Path) -> Path:
         writer.add_topic("/second", "std_msgs/msg/Float64", [DEFAULT_QOS])
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
         writer.add_topic("/camera", "sensor_msgs/msg/Image", [DEFAULT_QOS])
-        for tenth in range(10 * LENGTH + 1):
-            second, stamp = tenth // 10, START * SECOND + tenth * SECOND // 10
+        for tenth in range(10 * LENGTH_S + 1):
+            second, stamp = tenth // 10, START_S * SECOND_NS + tenth * SECOND_NS // 10
             batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
             writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
             writer.write("/second", stamp, serialize(FLOAT(data=float(second))))
@@ -72,8 +72,8 @@ def track(page: Page) -> dict[str, float]:
 def seek(page: Page, seconds: float) -> None:
     """Click on a time of the timeline."""
     box = track(page)
-    page.mouse.click(box["x"] + box["width"] * seconds / LENGTH, box["y"] + box["height"] / 2)
-    until(page, f"Math.abs(lw.timeline.position - {seconds}) < {LENGTH / box['width'] + 0.01}")
+    page.mouse.click(box["x"] + box["width"] * seconds / LENGTH_S, box["y"] + box["height"] / 2)
+    until(page, f"Math.abs(lw.timeline.position - {seconds}) < {LENGTH_S / box['width'] + 0.01}")
 
 
 def wait_for_second(page: Page, second: int) -> None:
@@ -84,7 +84,7 @@ def wait_for_second(page: Page, second: int) -> None:
 
 
 def test_seek_shows_frames_and_images_of_that_time(page: Page):
-    assert state(page, "timeline")["length"] == LENGTH
+    assert state(page, "timeline")["length"] == LENGTH_S
     for seconds in (20.55, 4.55, 12.55):
         seek(page, seconds)
         wait_for_second(page, int(seconds))
@@ -134,7 +134,7 @@ def test_steps_follow_the_chosen_topic(start, open_page, tmp_path: Path):
         writer.add_topic("/rare", "std_msgs/msg/Float64", [DEFAULT_QOS])
         for tenth in range(101):
             for topic in ("/second", *(["/rare"] if tenth % 40 == 0 else [])):
-                writer.write(topic, START * SECOND + tenth * SECOND // 10, serialize(FLOAT(data=0.0)))
+                writer.write(topic, START_S * SECOND_NS + tenth * SECOND_NS // 10, serialize(FLOAT(data=0.0)))
     page = open_page(start("view", str(tmp_path / "rare")), wait=False)
     until(page, "lw.timeline")
     page.get_by_role("combobox", name="Step by the messages of").select_option("/rare")
@@ -170,12 +170,12 @@ def test_space_plays_and_pauses_at_chosen_speed(page: Page):
 
 def test_playback_stops_or_repeats_at_end(page: Page):
     page.get_by_role("combobox", name="Speed").select_option("10")
-    seek(page, LENGTH - 3)
+    seek(page, LENGTH_S - 3)
     page.get_by_role("button", name="Play (Space)").click()
-    until(page, f"!lw.timeline.playing && lw.timeline.position === {LENGTH}")
-    wait_for_second(page, LENGTH)
+    until(page, f"!lw.timeline.playing && lw.timeline.position === {LENGTH_S}")
+    wait_for_second(page, LENGTH_S)
     page.get_by_role("button", name="Repeat from the start").click()
-    seek(page, LENGTH - 3)
+    seek(page, LENGTH_S - 3)
     page.get_by_role("button", name="Play (Space)").click()
     until(page, "lw.timeline.playing && lw.timeline.position < 20")
 

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.browser.conftest import SECONDS, until, wait_until_equal
+from tests.browser.conftest import TIMEOUT_S, until, wait_until_equal
 from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
@@ -25,7 +25,7 @@ def viewer(live):
 def context(browser):
     """Return a browser without any data."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    context.set_default_timeout(1000 * SECONDS)
+    context.set_default_timeout(1000 * TIMEOUT_S)
     yield context
     context.close()
 

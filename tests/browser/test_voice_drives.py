@@ -15,14 +15,14 @@ from playwright.sync_api import Browser, Locator, Page, Playwright
 
 from linkwright.speech.sound.wav import encode_wav
 from tests.browser.conftest import Start, run_browser, state, until
-from tests.browser.live import POLL_PERIOD
+from tests.browser.live import POLL_PERIOD_S
 from tests.speech.voices import WORDS, say
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
-SILENCE = 1.5
-AFTER = 1.2
+SILENCE_S = 1.5
+PAUSE_S = 1.2
 """The time in seconds that the button is held before and after the word; the file is much longer."""
 
 _KEPT = """
@@ -71,7 +71,7 @@ def browser(playwright: Playwright, microphone: Microphone) -> Iterator[Browser]
 
 def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, seed: int, **voice: float) -> None:
     """Hold a button and speak a word."""
-    samples = say(WORDS[word], silence=SILENCE, seed=seed, **voice)
+    samples = say(WORDS[word], silence=SILENCE_S, seed=seed, **voice)
     page.evaluate(_UNPLUGGED)
     until(page, "lw.panels.voice.isOpen === false")
     microphone.put(samples)
@@ -79,7 +79,7 @@ def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, see
     page.keyboard.down("Space")
     until(page, "lw.panels.voice.isOpen")
     # The browser plays the sound in real time.
-    page.wait_for_timeout(1000 * (len(samples) / 16_000 - SILENCE + AFTER))
+    page.wait_for_timeout(1000 * (len(samples) / 16_000 - SILENCE_S + PAUSE_S))
     page.keyboard.up("Space")
 
 
@@ -128,7 +128,7 @@ def test_enrolled_words_drive_and_stop_mbot(
     wait_until(
         lambda: math.hypot(position(page)[0] - x, position(page)[1] - y) > 0.2,
         what=lambda: position(page),
-        pause=POLL_PERIOD,
+        pause=POLL_PERIOD_S,
     )
     speak(page, talk_button, microphone, "stop", seed=8, speed=1.03)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")

@@ -11,7 +11,7 @@ from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, Durabilit
 from linkwright.messages import String, TFMessage, get_message, get_service
 from linkwright.page.protocol.simulation import ModelChoices
 from linkwright.simulation.page.modeling import entities
-from tests.browser.conftest import SECONDS, state, until, wait_until_equal
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.browser.live import configuration
 from tests.waiting import wait_until
 
@@ -75,7 +75,9 @@ def test_models_are_drawn_and_moved(live, open_page):
 
 def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, tmp_path):
     list_requested = threading.Event()
-    monkeypatch.setattr(entities, "model_choices", lambda packages: (list_requested.wait(SECONDS), ModelChoices([]))[1])
+    monkeypatch.setattr(
+        entities, "model_choices", lambda packages: (list_requested.wait(TIMEOUT_S), ModelChoices([]))[1]
+    )
     viewer = publish_world(live)
     requests_made: list[tuple[str, object]] = []
 

@@ -29,7 +29,7 @@ ROBOT = """<robot name="r">
 </robot>
 """
 OLD = "what was there before"
-ROOM = 50  # less than any command writes here
+FREE_BYTES = 50  # less than any command writes here
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def test_command_on_full_disk_leaves_files_unchanged(
     for name in ("out", "out.html", "out.glb", "out.png", "out.gv", "out.pdf"):
         (robot.parent / name).write_text(OLD)
     before = files(robot.parent)
-    with full_disk(ROOM):
+    with full_disk(FREE_BYTES):
         status = main(list(words))
     printed = capsys.readouterr().err
     assert files(robot.parent) == before
@@ -239,7 +239,7 @@ def test_output_truncated_by_full_disk_is_an_error(
     """The disk has space for only the first bytes of each output."""
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     for name, words in LONG.items():
-        with (robot.parent / "out").open("w") as out, full_disk(ROOM):
+        with (robot.parent / "out").open("w") as out, full_disk(FREE_BYTES):
             result = subprocess.run(
                 [sys.executable, "-m", "linkwright", *words],
                 env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src")},
@@ -248,7 +248,7 @@ def test_output_truncated_by_full_disk_is_an_error(
                 text=True,
                 check=False,
             )
-        assert (robot.parent / "out").stat().st_size == ROOM, name
+        assert (robot.parent / "out").stat().st_size == FREE_BYTES, name
         assert result.returncode == 1, name
         assert "error[CLI202]: cannot write to standard output: File too large" in result.stderr, name
 

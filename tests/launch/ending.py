@@ -9,21 +9,21 @@ from typing import Any
 from launch.actions import OpaqueFunction, Shutdown, TimerAction
 
 from launch import LaunchContext
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
-_PAUSE = 0.02
+_PAUSE_S = 0.02
 
 Condition = Callable[[LaunchContext], object]
 
 
 def when(condition: Condition, *actions: Any) -> OpaqueFunction:
     """Run actions when a condition holds, or after a minute, so that the test reports what is missing."""
-    limit = time.monotonic() + SECONDS
+    limit = time.monotonic() + TIMEOUT_S
 
     def look(context: LaunchContext) -> list[Any]:
         if condition(context) or time.monotonic() > limit:
             return list(actions)
-        return [TimerAction(period=_PAUSE, actions=[OpaqueFunction(function=look)])]
+        return [TimerAction(period=_PAUSE_S, actions=[OpaqueFunction(function=look)])]
 
     return OpaqueFunction(function=look)
 

@@ -11,7 +11,7 @@ import sys
 import time
 from pathlib import Path
 
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 DRIVER = """
 from linkwright.process.interruption import end_on_interrupt
@@ -65,7 +65,7 @@ class Running:
     def err(self) -> str:
         return self._files[1].read_text()
 
-    def until(self, text: str, seconds: float = SECONDS) -> None:
+    def until(self, text: str, seconds: float = TIMEOUT_S) -> None:
         deadline = time.monotonic() + seconds
         while text not in self.out and text not in self.err:
             assert self.process.poll() is None, f"the launch ended:\n{self.out}\n{self.err}"
@@ -76,7 +76,7 @@ class Running:
         """Send a signal, and return the exit status and the time in seconds until the end."""
         start_s = time.monotonic()
         self.process.send_signal(number)
-        return self.process.wait(SECONDS), time.monotonic() - start_s
+        return self.process.wait(TIMEOUT_S), time.monotonic() - start_s
 
     @property
     def url(self) -> str:

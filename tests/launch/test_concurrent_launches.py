@@ -12,7 +12,7 @@ import pytest
 
 from tests.domains import own_domain
 from tests.launch.launcher import Running, launch_file
-from tests.waiting import SECONDS, eventually, wait_until
+from tests.waiting import TIMEOUT_S, eventually, wait_until
 
 SHARED = "another launch or program on ROS_DOMAIN_ID"
 
@@ -51,7 +51,7 @@ class Page:
             session.ws_connect(running.url.replace("/?", "/ws?"), max_msg_size=0) as socket,
         ):
             while not condition():
-                message = await socket.receive(timeout=SECONDS)
+                message = await socket.receive(timeout=TIMEOUT_S)
                 if message.type is aiohttp.WSMsgType.TEXT:
                     decoded = json.loads(message.data)
                     for view_message in decoded if isinstance(decoded, list) else [decoded]:

@@ -18,7 +18,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.launch import LaunchOptions, LaunchTarget, run_launch
 from tests.launch.launcher import Running, is_gone, launch_file
 from tests.places import TUTORIAL_PACKAGES
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 Write = Callable[[str, str], Path]
 
@@ -130,7 +130,7 @@ class TestSignals:
         running.until("Default logging verbosity")
         running.process.send_signal(signal.SIGINT)
         running.until("hangs")
-        assert running.process.wait(SECONDS) == 130
+        assert running.process.wait(TIMEOUT_S) == 130
 
     def test_process_receives_sigint_first(self, start: Callable[..., Running], write: Write) -> None:
         program = (

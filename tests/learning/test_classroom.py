@@ -21,7 +21,7 @@ from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
 from linkwright.process.forked import IS_POSSIBLE
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 SOLUTION = "01-one-link/solution/one-link/robot.urdf"
 
@@ -257,7 +257,7 @@ def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys,
     result = check_in_process(step, tmp_path, time_limit=3.0, server=check_server)
     assert "took longer than 3 s" in str(result.checks[0].message)
     if sys.platform != "win32":
-        wait_until(lambda: not is_running(int(marker.read_text())), SECONDS)
+        wait_until(lambda: not is_running(int(marker.read_text())), TIMEOUT_S)
     checks.write_text("import os\nos._exit(7)\n")
     result = check_in_process(step, tmp_path, server=check_server)
     assert "ended early" in str(result.checks[0].message)

@@ -22,7 +22,7 @@ from linkwright.learning.grading import grading, workers
 from linkwright.learning.grading import running as grading_running
 from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox needs Linux")
 
@@ -99,7 +99,7 @@ def test_malicious_students_affect_only_themselves(folder):
     assert reasons[0]["en"] == "the program used more than 3 s of processor time"
     assert "limits" in data["protections"]
     assert all((folder / f"students/good{number}/program.py").read_text() == "print(42)" for number in range(8))
-    wait_until(lambda: not processes_with("linkwright_grade_"), SECONDS)
+    wait_until(lambda: not processes_with("linkwright_grade_"), TIMEOUT_S)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGHUP])
@@ -107,10 +107,10 @@ def test_runs_end_with_grader(folder, number):
     write_student(folder, "endless", ENDLESS)
     words = ["learn", "grade", "--course", "course", "--cpu-seconds", "300", "students/endless"]
     grader = subprocess.Popen([sys.executable, "-m", "linkwright", *words], cwd=folder, start_new_session=True)
-    wait_until(lambda: processes_with("program.py"), SECONDS)
+    wait_until(lambda: processes_with("program.py"), TIMEOUT_S)
     grader.send_signal(number)
-    assert grader.wait(SECONDS) != 0
-    wait_until(lambda: not processes_with("program.py") and not processes_with("linkwright_grade_"), SECONDS)
+    assert grader.wait(TIMEOUT_S) != 0
+    wait_until(lambda: not processes_with("program.py") and not processes_with("linkwright_grade_"), TIMEOUT_S)
 
 
 def test_grade_report_has_points_claims_and_all_formats(folder):

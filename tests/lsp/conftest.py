@@ -14,7 +14,7 @@ from lsprotocol import types
 from pygls.lsp.client import LanguageClient
 
 from tests.measuring import coverage_options
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 MAIN = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:include filename="parts.xacro"/>
@@ -103,7 +103,7 @@ class Editor:
 
     async def until(self, name: str, *codes: str) -> list[types.Diagnostic]:
         """Wait until a file has exactly these findings, and return them."""
-        for _ in range(int(SECONDS / 0.02)):
+        for _ in range(int(TIMEOUT_S / 0.02)):
             if self.uri(name) in self.diagnostics and sorted(self.codes(name)) == sorted(codes):
                 return list(self.diagnostics[self.uri(name)])
             await asyncio.sleep(0.02)

@@ -12,7 +12,7 @@ from pygls.exceptions import JsonRpcException
 from linkwright.diagnostics import phrase
 from linkwright.lsp.folders import WATCHED_FILES, show_progress
 from tests.lsp.conftest import MAIN, MANIFEST, PARTS, connected
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 MAIN_FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 
@@ -59,7 +59,7 @@ async def test_renamed_folder_is_searched_again(editor):
     (editor.folder / "urdf").rename(editor.folder / "description")
     renamed = types.FileRename(editor.uri("urdf"), editor.uri("description"))
     editor.client.workspace_did_rename_files(types.RenameFilesParams([renamed]))
-    for _ in range(int(SECONDS / 0.1)):
+    for _ in range(int(TIMEOUT_S / 0.1)):
         symbols = await editor.client.workspace_symbol_async(types.WorkspaceSymbolParams("base"))
         if {symbol.location.uri for symbol in symbols} == {editor.uri("description/arm.urdf.xacro")}:
             return
@@ -72,7 +72,7 @@ async def test_editor_is_asked_to_watch_files(package):
     workspace = types.WorkspaceClientCapabilities(did_change_watched_files=watched)
     registrations: asyncio.Queue[types.Registration] = asyncio.Queue()
     async with connected(package, types.ClientCapabilities(workspace=workspace), registrations) as _:
-        registration = await asyncio.wait_for(registrations.get(), SECONDS)
+        registration = await asyncio.wait_for(registrations.get(), TIMEOUT_S)
     assert registration.method == types.WORKSPACE_DID_CHANGE_WATCHED_FILES
     assert [watcher["globPattern"] for watcher in registration.register_options["watchers"]] == [*WATCHED_FILES]
 

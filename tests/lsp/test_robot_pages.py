@@ -12,7 +12,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from tests.lsp.conftest import MAIN, PARTS, Editor, connected
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 SHOWING = types.ClientCapabilities(
@@ -37,7 +37,7 @@ async def address(editor: Editor, name: str, *, opens: bool = False) -> str:
 
 async def message(socket, kind: str, **fields) -> dict:
     """Return the next message of a kind from a page's socket, with some content."""
-    async with asyncio.timeout(SECONDS):
+    async with asyncio.timeout(TIMEOUT_S):
         async for received in socket:
             message = json.loads(received.data) if isinstance(received.data, str) else {}
             if message.get("type") == kind and all(message.get(key) == value for key, value in fields.items()):
@@ -80,7 +80,7 @@ async def test_page_follows_editor_and_opens_source_lines(showing_editor):
 
         display = scene["display"]
         await socket.send_json({"type": "element_selected", "display": display, "kind": "joint", "name": "lower_joint"})
-        async with asyncio.timeout(SECONDS):
+        async with asyncio.timeout(TIMEOUT_S):
             request = await shown.get()
         assert (request.uri, request.selection.start.line) == (editor.uri(PARTS_FILE), 3)
 
@@ -115,7 +115,7 @@ async def test_robot_edit_changes_unsaved_editor_text(showing_editor):
 
         await edit(1)
         assert not (await message(socket, "edit_written"))["is_saved"]
-        async with asyncio.timeout(SECONDS):
+        async with asyncio.timeout(TIMEOUT_S):
             (change,) = (await edits.get()).document_changes
         assert (change.text_document.uri, change.text_document.version) == (editor.uri(PARTS_FILE), 2)
         assert [edit.new_text for edit in change.edits] == ["25"]

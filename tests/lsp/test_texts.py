@@ -7,7 +7,7 @@ import asyncio
 from lsprotocol import types
 
 from tests.lsp.conftest import MAIN
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 FILE = "urdf/arm.urdf.xacro"
 OPTIONS = types.FormattingOptions(2, insert_spaces=True)
@@ -111,10 +111,10 @@ async def test_unsupported_file_has_empty_list_of_colors(editor):
     editor.open("notes.txt")
     document = editor.document("notes.txt")
     colors = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
-    assert [*await asyncio.wait_for(colors, SECONDS)] == []
+    assert [*await asyncio.wait_for(colors, TIMEOUT_S)] == []
     place = types.Range(types.Position(0, 0), types.Position(0, 3))
     parameters = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
-    assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(parameters), SECONDS)] == []
+    assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(parameters), TIMEOUT_S)] == []
 
 
 async def test_single_line_file_has_no_folds(editor):

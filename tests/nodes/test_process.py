@@ -16,7 +16,7 @@ import pytest
 from linkwright.nodes.process import main
 from linkwright.wire.dds import unavailable_reason
 from tests.domains import own_domain
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 needs_network = pytest.mark.skipif(bool(unavailable_reason()), reason="cyclonedds is not installed")
 
@@ -36,7 +36,7 @@ class Program:
         self._reader = Thread(target=self._read)
         self._reader.start()
 
-    def wait_for(self, text: str, seconds: float = SECONDS) -> str:
+    def wait_for(self, text: str, seconds: float = TIMEOUT_S) -> str:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             for line in self.lines:
@@ -49,7 +49,7 @@ class Program:
         """Send a signal unless the process has ended, and return the exit status."""
         if self.process.poll() is None:
             self.process.send_signal(number)
-        status = self.process.wait(SECONDS)
+        status = self.process.wait(TIMEOUT_S)
         self._reader.join()
         assert self.process.stdout is not None
         self.process.stdout.close()

@@ -17,11 +17,11 @@ import pytest
 from linkwright.page import peers
 from linkwright.page.access import is_local_connection
 from linkwright.page.peers import may_be_own_user
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the tables of connections are Linux's")
 FAMILIES = ("127.0.0.1", "127.0.0.1"), ("127.0.0.1", "::ffff:127.0.0.1"), ("::1", "::1"), ("::", "127.0.0.1")
-NOBODY = 65534
+NOBODY_UID = 65534
 
 CONNECT = """
 import encodings.idna, os, socket, sys  # all imports first, as the other user may not be able to read Python's files
@@ -39,7 +39,7 @@ class Connection(Transport):
 
 
 def accepted(listener: socket.socket) -> tuple[socket.socket, Connection]:
-    listener.settimeout(SECONDS)
+    listener.settimeout(TIMEOUT_S)
     accepted_socket, _ = listener.accept()
     return accepted_socket, Connection(accepted_socket.getpeername(), accepted_socket.getsockname())
 
@@ -78,7 +78,7 @@ def test_program_of_same_user_is_accepted(listening: str, connecting: str) -> No
 @pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
 def test_other_user_is_rejected(monkeypatch: pytest.MonkeyPatch, listening: str, connecting: str) -> None:
     with connected(listening, connecting) as (_, connection):
-        monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY_UID - 1)
         monkeypatch.setattr(peers, "_ROOT", None)
         assert is_local_connection(connection)
         assert not may_be_own_user(connection)
@@ -86,7 +86,7 @@ def test_other_user_is_rejected(monkeypatch: pytest.MonkeyPatch, listening: str,
 
 @linux
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can become another user")
-@pytest.mark.parametrize(("user", "is_accepted"), [(NOBODY, False), (0, True)])
+@pytest.mark.parametrize(("user", "is_accepted"), [(NOBODY_UID, False), (0, True)])
 def test_user_of_other_process_is_recognized(user: int, is_accepted: bool) -> None:
     with listen("127.0.0.1") as listener:
         program = CONNECT.format(user=user, port=listener.getsockname()[1])
@@ -101,7 +101,7 @@ def test_user_of_other_process_is_recognized(user: int, is_accepted: bool) -> No
 @linux
 def test_root_is_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
     with connected() as (_, connection):
-        monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY_UID - 1)
         monkeypatch.setattr(peers, "_ROOT", os.getuid())
         assert may_be_own_user(connection)
 

@@ -18,7 +18,7 @@ from linkwright.page.page_server import PageServer
 from linkwright.page.program_pages import Embedder
 from linkwright.panels.terminal.feature import TerminalFeature
 from tests.viewer.scene import World, page
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
 
@@ -188,5 +188,5 @@ async def test_closing_server_does_not_wait_for_programs(tmp_path, monkeypatch):
     async with classroom(tmp_path) as world, program() as server:
         async with page(world.viewer):
             assert await server.embed(environment(world), "")
-        await asyncio.wait_for(world.viewer._server.close(), SECONDS)
+        await asyncio.wait_for(world.viewer._server.close(), TIMEOUT_S)
         assert world.viewer._server.program_pages.pages == []

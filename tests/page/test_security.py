@@ -21,7 +21,7 @@ from linkwright.page.server import MAX_MESSAGE_SIZE
 from tests.leaving import UPGRADE, request_and_reset
 from tests.page.test_files import package, write
 from tests.viewer.scene import open_world, page
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 MESHED = """\
 <robot name="meshed"><link name="base"><visual><geometry>
@@ -57,7 +57,7 @@ async def raw(viewer, target: str, *, host: str | None = None, method: str = "GE
     lines += [f"{name.replace('_', '-')}: {value}" for name, value in headers.items()]
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(("\r\n".join(lines) + "\r\n\r\n").encode())
-    response = await asyncio.wait_for(reader.read(), SECONDS)
+    response = await asyncio.wait_for(reader.read(), TIMEOUT_S)
     writer.close()
     await writer.wait_closed()
     head, _, body = response.partition(b"\r\n\r\n")

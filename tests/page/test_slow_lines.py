@@ -35,7 +35,7 @@ Visualization Manager:
     Fixed Frame: base
     Frame Rate: 50
 """
-MEGABIT = 125_000.0
+MEGABIT_IN_BYTES = 125_000.0
 
 
 def cloud(count: int):
@@ -141,7 +141,7 @@ async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int 
 @skipping
 async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
     """The server knows less about a client that acknowledges nothing, such as another program."""
-    async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT) as url:
+    async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT_IN_BYTES) as url:
         async with watching(url, answers=answers) as watcher:
             start_s = watcher.now()
             await publish_all(world, seconds)
@@ -199,7 +199,7 @@ async def test_thinned_cloud_is_completed_when_page_is_idle():
 async def test_cloud_over_slow_connection_does_not_delay_transforms():
     async with (
         open_world(RvizConfig.parse(FILE)) as world,
-        slow_line(world.viewer.url, 2 * MEGABIT) as url,
+        slow_line(world.viewer.url, 2 * MEGABIT_IN_BYTES) as url,
         watching(url) as watcher,
     ):
         clouds = world.graph.create_node("senses").create_publisher(

@@ -18,10 +18,10 @@ from tests.panels.test_timeline import recorded
 from tests.skipping import skipping
 from tests.viewer.scene import Client, World
 
-SECONDS = 5.0
+TIMEOUT_S = 5.0
 """The seconds after which an abandoned upload is removed; normally a minute."""
 
-REFUSED = -1
+REFUSED_STATUS = -1
 """Replaces the HTTP status if the response has a problem for the user."""
 
 
@@ -38,8 +38,8 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture(autouse=True)
 def short_time_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the time limits to seconds."""
-    monkeypatch.setattr(uploads, "IDLE_TIMEOUT_S", SECONDS)
-    monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", SECONDS)
+    monkeypatch.setattr(uploads, "IDLE_TIMEOUT_S", TIMEOUT_S)
+    monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", TIMEOUT_S)
 
 
 class Sender:
@@ -57,7 +57,7 @@ class Sender:
             if response.content_type != "application/json":
                 return response.status, {"text": await response.text()}
             message = await response.json()
-            return REFUSED if "problem" in message else response.status, message
+            return REFUSED_STATUS if "problem" in message else response.status, message
 
     async def announce(self, name: str, files: dict[str, int]) -> tuple[int, dict[str, str]]:
         listed = [{"name": name, "size": size} for name, size in files.items()]
@@ -160,14 +160,14 @@ async def test_upload_requires_token_and_same_origin(scratch: Path):
 @pytest.mark.parametrize(
     ("name", "files", "status"),
     [
-        ("drive", {"../drive.mcap": 1}, REFUSED),
-        ("drive", {"a/b.mcap": 1}, REFUSED),
-        ("drive", {"notes.txt": 1}, REFUSED),
-        ("drive", {}, REFUSED),
+        ("drive", {"../drive.mcap": 1}, REFUSED_STATUS),
+        ("drive", {"a/b.mcap": 1}, REFUSED_STATUS),
+        ("drive", {"notes.txt": 1}, REFUSED_STATUS),
+        ("drive", {}, REFUSED_STATUS),
         ("..", {"a.mcap": 1, "b.mcap": 1}, 400),
         ("a/b", {"a.mcap": 1, "b.mcap": 1}, 400),
         ("drive", {"a.mcap": -1}, 400),
-        ("drive", {"a.mcap": 10**18}, REFUSED),
+        ("drive", {"a.mcap": 10**18}, REFUSED_STATUS),
     ],
 )
 async def test_invalid_or_oversized_recording_is_rejected_before_upload(
@@ -187,7 +187,7 @@ async def test_invalid_or_oversized_recording_is_rejected_before_upload(
 async def test_unreadable_recording_is_reported_without_server_path(scratch: Path, data: bytes):
     async with upload_server() as (_, sender):
         status, response = await sender.send("x", {"x.mcap": data})
-        assert status == REFUSED
+        assert status == REFUSED_STATUS
         assert "'x.mcap'" in response["problem"]
         assert str(scratch) not in response["problem"]
         assert not list_uploads(scratch)
@@ -211,11 +211,11 @@ async def test_recording_of_program_is_shown_and_kept(tmp_path: Path):
         assert status == 200, response
         async with recording_page(sender, response["recording"]) as client:
             assert not (await client.until("timeline"))["live"]
-        await asyncio.sleep(4 * SECONDS)
+        await asyncio.sleep(4 * TIMEOUT_S)
         assert world.viewer.guests.audience(response["recording"]) is None
         assert path.exists()
         path.write_bytes(b"not a recording")
-        assert (await sender.ask("POST", url))[0] == REFUSED
+        assert (await sender.ask("POST", url))[0] == REFUSED_STATUS
         assert (await sender.ask("POST", "export/other/x.mcap"))[0] == 404
         sender.token = "another"
         assert (await sender.ask("POST", url))[0] == 401
@@ -253,7 +253,7 @@ async def test_canceled_or_stalled_upload_is_removed(scratch: Path):
         assert len(list_uploads(scratch)) == 2
         assert (await sender.ask("DELETE", f"recordings/{given_up['key']}"))[0] == 204
         assert len(list_uploads(scratch)) == 1
-        await asyncio.sleep(2 * SECONDS)
+        await asyncio.sleep(2 * TIMEOUT_S)
         assert not list_uploads(scratch)
         assert (await sender.ask("PUT", f"recordings/{forgotten['key']}/0", data=b"x" * 100))[0] == 404
 
@@ -264,7 +264,7 @@ async def test_number_of_simultaneous_uploads_is_limited(scratch: Path):
         for _ in range(4):
             assert (await sender.announce("x", {"x.mcap": 1}))[0] == 200
         status, response = await sender.announce("x", {"x.mcap": 1})
-        assert status == REFUSED
+        assert status == REFUSED_STATUS
         assert "wait" in response["problem"]
     assert not list_uploads(scratch), "the end of the program removes the files"
 
@@ -277,10 +277,10 @@ async def test_recording_is_closed_after_its_last_page(tmp_path: Path, scratch: 
         async with recording_page(sender, response["recording"]) as client:
             await client.until("timeline")
             answering = asyncio.create_task(answer_pings(client))
-            await asyncio.sleep(3 * SECONDS)
+            await asyncio.sleep(3 * TIMEOUT_S)
             assert len(list_uploads(scratch)) == 1, "a page shows the recording"
             answering.cancel()
-        await asyncio.sleep(2 * SECONDS)
+        await asyncio.sleep(2 * TIMEOUT_S)
         assert not list_uploads(scratch)
 
 
@@ -292,7 +292,7 @@ async def test_open_recordings_are_limited_and_removed_at_exit(tmp_path: Path, s
         for _ in range(4):
             assert (await sender.send("drive", files))[0] == 200
         status, response = await sender.send("drive", files)
-        assert status == REFUSED
+        assert status == REFUSED_STATUS
         assert "already open" in response["problem"]
         assert len(list_uploads(scratch)) == 4
         await asyncio.sleep(11)

@@ -10,7 +10,7 @@ from tests.panels.test_time import arrived, config
 from tests.skipping import skipping
 from tests.viewer.scene import World, open_world, page
 
-KEPT = 10_000_000
+MAX_HISTORY_BYTES = 10_000_000
 
 
 def move_arm(world: World, x: float) -> int:
@@ -32,7 +32,7 @@ async def publish_positions(world: World) -> list[float]:
 
 @skipping
 async def test_live_view_pauses_seeks_and_returns_to_live():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         timeline = await client.until("timeline")
         assert timeline["live"]
         await client.until("playhead", live=True)
@@ -58,7 +58,7 @@ async def test_live_view_pauses_seeks_and_returns_to_live():
 
 @skipping
 async def test_playback_of_history_reaches_live():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         await client.until("playhead", live=True)
         times_between = await publish_positions(world)
         await client.send("seek_time", position=times_between[0])
@@ -71,7 +71,7 @@ async def test_playback_of_history_reaches_live():
 
 @skipping
 async def test_subscription_during_pause_receives_past_latched_message():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         world.describe("<robot name='early'/>")
         texts: list[str] = []
         node = world.viewer.context.node
@@ -93,7 +93,7 @@ async def test_subscription_during_pause_receives_past_latched_message():
 
 
 async def test_pending_messages_are_stored_when_history_is_read():
-    async with open_world(config(), history=KEPT) as world:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world:
         live = world.viewer.live
         for x in range(3):
             move_arm(world, float(x))
@@ -110,14 +110,14 @@ async def test_pending_messages_are_stored_when_history_is_read():
 
 
 async def test_pending_messages_are_stored_in_batches():
-    async with open_world(config(), history=KEPT) as world:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world:
         for x in range(20):
             move_arm(world, float(x))
         assert world.viewer.live.size > 0
 
 
 async def test_unserializable_message_is_reported_and_others_are_stored():
-    async with open_world(config(), history=KEPT) as world:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world:
         start_ns = move_arm(world, 1.0)
         invalid_message = String()
         invalid_message._data = 7  # the setter would reject this value

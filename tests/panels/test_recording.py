@@ -16,7 +16,7 @@ from linkwright.page.access import TOKEN_PARAMETER
 from linkwright.panels import recording as module
 from linkwright.panels.recording import RecordingFeature
 from tests.full_disk import full_disk, needs_limits
-from tests.panels.test_live_history import KEPT, publish_positions
+from tests.panels.test_live_history import MAX_HISTORY_BYTES, publish_positions
 from tests.panels.test_time import config
 from tests.panels.test_timeline import open_recording
 from tests.recordings import needs_rosbags
@@ -251,7 +251,7 @@ async def test_simulated_time_reset_stops_recording():
 
 @skipping
 async def test_history_and_part_of_history_are_saved():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         await client.until("recording_state")
         world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
         times_between = await publish_positions(world)
@@ -272,7 +272,7 @@ async def test_history_and_part_of_history_are_saved():
 
 @skipping
 async def test_saved_simulation_history_starts_at_last_time_reset():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         await client.until("recording_state")
         world.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
         clock = world.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)

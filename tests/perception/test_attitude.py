@@ -18,7 +18,7 @@ from linkwright.geometry.single import (
 from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, WorldFrame, attitude_at_rest
 
 angles = st.floats(-1.4, 1.4)
-DIP = 1.0
+MAGNETIC_DIP_RAD = 1.0
 """The angle of the magnetic field below the horizon, in rad."""
 
 
@@ -29,7 +29,7 @@ def acceleration_at_rest(orientation, world=WorldFrame.ENU):
 
 def field(orientation, world=WorldFrame.ENU):
     """Return the reading of a magnetometer."""
-    level, vertical = cos(DIP), -sin(DIP) * world.up
+    level, vertical = cos(MAGNETIC_DIP_RAD), -sin(MAGNETIC_DIP_RAD) * world.up
     return rotate(
         quaternion_inverse(orientation), (0.0, level, vertical) if world is WorldFrame.ENU else (level, 0.0, vertical)
     )

@@ -26,7 +26,7 @@ from cyclonedds.util import duration
 from linkwright.wire.dds.settings import read_settings
 from tests.wire.ros_peer import as_bytes, make_type, text
 
-ROUNDS = 40
+ROUND_COUNT = 40
 HEADER = b"\0\1\0\0"
 RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
 LASTING = RELIABLE + Qos(Policy.Durability.TransientLocal)
@@ -38,7 +38,7 @@ def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> 
 
 def bodies(lottery: random.Random) -> list[bytes]:
     """Return bytes that are rarely a valid message, each with an encapsulation header that Cyclone accepts."""
-    packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
+    packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUND_COUNT)]
     packets += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
     packets += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
     packets += [HEADER + b"\2\0\0\0\xff\0\0\0", HEADER]

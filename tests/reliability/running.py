@@ -17,7 +17,7 @@ import psutil
 
 from linkwright.standins.process import environment
 from tests.begun import BEGUN, command_that_reports
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 LINKWRIGHT = str(Path(sys.executable).with_name("linkwright"))
 PROGRAM = """\
@@ -84,7 +84,7 @@ class Running:
         rows = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
         return int(rows[-1][1]) if rows else -1
 
-    def wait_for(self, text: str, seconds: float = SECONDS, times: int = 1) -> None:
+    def wait_for(self, text: str, seconds: float = TIMEOUT_S, times: int = 1) -> None:
         """Wait until a number of lines contain a text."""
         wait_until(lambda: self.count(text) >= times, seconds, lambda: f"'{text}' in\n{self.text}")
 
@@ -99,7 +99,7 @@ class Running:
         self.process.kill()
         self.process.wait()
 
-    def wait(self, seconds: float = SECONDS) -> int:
+    def wait(self, seconds: float = TIMEOUT_S) -> int:
         """Wait for the end of the process, and return its exit status."""
         status = self.process.wait(seconds)
         self._reader.join(60.0)
@@ -159,7 +159,7 @@ class Machine:
         running.lines.remove(f"{BEGUN}\n")
         return running
 
-    def verb(self, *words: object, seconds: float = SECONDS, **variables: str) -> str:
+    def verb(self, *words: object, seconds: float = TIMEOUT_S, **variables: str) -> str:
         """Return the output of ``linkwright WORDS``, which must succeed in time."""
         running = self.command(*words, **variables)
         status = running.wait(seconds)

@@ -18,7 +18,7 @@ import pytest
 
 from tests.begun import BEGUN, command_that_reports
 from tests.reliability.running import MARK, Machine, launch_file, program
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 TALKER = """
 class Program(Node):
@@ -97,7 +97,7 @@ def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) ->
             wait_until(lambda heard=chunks: BEGUN.encode() in b"".join(heard))
             time.sleep(delay)
             os.write(main, b"\x03")
-            status = process.wait(SECONDS)
+            status = process.wait(TIMEOUT_S)
         finally:
             process.kill()
         text = b"".join(chunks).decode(errors="replace")

@@ -12,7 +12,7 @@ import psutil
 import pytest
 
 from tests.begun import BEGUN, command_that_reports
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 MOMENTS = (0.0, 0.5, 1.0)
 """The times of the interrupts: seconds of processor time since the start of the command."""
@@ -61,7 +61,7 @@ def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> Non
             work_before = _work(watched)
             wait_until(lambda: _work(watched) >= work_before + interrupt_point, what=words)  # noqa: B023 - called at once
             process.send_signal(signal.SIGINT)
-            _, output = process.communicate(timeout=SECONDS)
+            _, output = process.communicate(timeout=TIMEOUT_S)
         finally:
             process.kill()
             process.wait()

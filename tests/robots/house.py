@@ -23,7 +23,7 @@ from tests.places import GAZEBO_PACKAGE, NAVIGATION_PACKAGE
 
 WORLD = GAZEBO_PACKAGE / "worlds" / "house.world"
 ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
-STEP = 0.1
+STEP_S = 0.1
 
 
 def flat(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -65,8 +65,8 @@ class House(SteppedSimulation):
 
     def advance_and_watch(self, seconds: float) -> None:
         """Advance the time, and record the contacts of mbot's body and wheels except with the ground."""
-        for _ in range(round(seconds / STEP)):
-            self.advance(STEP)
+        for _ in range(round(seconds / STEP_S)):
+            self.advance(STEP_S)
             model, data = self.simulation.model, self.simulation.data
             for first, second in np.array(data.contact.geom[: data.ncon]).reshape(-1, 2):
                 names = [str(model.geom(int(geometry)).name) for geometry in (first, second)]

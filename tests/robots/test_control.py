@@ -25,7 +25,7 @@ pytest.importorskip("mujoco")
 
 ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
 NODES = ("drive_square", "follow_wall", "go_to_pose", "follow_line", "avoid_obstacles")
-RADIUS = 0.2
+ROBOT_RADIUS_M = 0.2
 """The radius of mbot in meters."""
 
 
@@ -96,7 +96,7 @@ def test_follow_wall_goes_through_maze(load: Any) -> None:
             nearest.append(min(scans.last.ranges))
             beside.append(scans.last.ranges[90])  # 90 degrees to the right
         assert way > 8.0
-        assert min(nearest) > RADIUS + 0.1, "mbot touches nothing"
+        assert min(nearest) > ROBOT_RADIUS_M + 0.1, "mbot touches nothing"
         near_distances = [distance for distance in beside if distance < 0.9]
         assert len(near_distances) > 40, "there is a wall on the right most of the time"
         assert sorted(near_distances)[len(near_distances) // 2] == pytest.approx(0.5, abs=0.1)
@@ -164,7 +164,7 @@ def test_avoid_obstacles_touches_nothing(load: Any) -> None:
         for _ in range(60):
             test.advance(1.0)
             way, before = way + math.dist(before, place(test)), place(test)
-            assert min(scans.last.ranges) > RADIUS + 0.05
+            assert min(scans.last.ranges) > ROBOT_RADIUS_M + 0.05
         assert way > 6.0
         assert any("m ahead" in text for text in logged(test))
 

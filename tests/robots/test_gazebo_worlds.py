@@ -21,8 +21,8 @@ from tests.repository_tools import TOOLS, load_tool
 WORLDS = sorted((GAZEBO_PACKAGE / "worlds").glob("*.world"))
 MODELS = sorted((GAZEBO_PACKAGE / "models").iterdir())
 LAUNCH_FILES = sorted((GAZEBO_PACKAGE / "launch").glob("*.launch.py"))
-ROBOT_HEIGHT = 0.4
-START_RADIUS = 0.3
+ROBOT_HEIGHT_M = 0.4
+START_RADIUS_M = 0.3
 """The radius of the free area around the origin in meters; mbot's radius is 0.2."""
 
 
@@ -69,10 +69,10 @@ def test_robot_start_area_is_free(path: Path) -> None:
         # The origin in the axes of the box, and its distance from the box.
         forward, sideways = (-x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) - y * math.cos(yaw))
         distance = math.hypot(max(abs(forward) - size[0] / 2, 0), max(abs(sideways) - size[1] / 2, 0))
-        assert distance > START_RADIUS, name
+        assert distance > START_RADIUS_M, name
     for include in ET.parse(path).getroot().iter("include"):
         x, y = map(float, include.findtext("pose", "0 0").split()[:2])
-        assert math.hypot(x, y) > START_RADIUS + 0.4, include.findtext("name")
+        assert math.hypot(x, y) > START_RADIUS_M + 0.4, include.findtext("name")
 
 
 def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[float, ...]]]:
@@ -84,7 +84,7 @@ def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[fl
                 continue
             x, y, z, _, _, yaw = map(float, collision.findtext("pose", "0 0 0 0 0 0").split())
             size = tuple(map(float, text.split()))
-            if z - size[2] / 2 < ROBOT_HEIGHT:
+            if z - size[2] / 2 < ROBOT_HEIGHT_M:
                 yield f"{model.get('name')}/{collision.get('name')}", x, y, yaw, size
 
 

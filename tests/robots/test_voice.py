@@ -17,7 +17,7 @@ from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.testing import AsyncSteppedSimulation
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
 from tests.robots.workspaces import colcon_build, sourced
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 COMMANDS = VOICE_PACKAGE / "config" / "commands.yaml"
 WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
@@ -91,7 +91,7 @@ def test_colcon_installs_package_and_program_runs(tmp_path: Path) -> None:
         env={**os.environ, "PYTHONPATH": sourced(tmp_path, "PYTHONPATH"), "LINKWRIGHT_DDS": "0"},
         capture_output=True,
         text=True,
-        timeout=SECONDS,
+        timeout=TIMEOUT_S,
         check=False,
     )
     assert ran.returncode == 1

@@ -10,7 +10,7 @@ from linkwright.messages import get_message
 from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording
 from tests.simulation.fluids.server import running_server, weightless_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import box
 
 STATE = "/model/robot/battery/pack/state"
@@ -37,17 +37,17 @@ def powered(parameters: str, extra: str = "") -> str:
 async def send(graph, server, topic: str, type_name: str = "std_msgs/msg/Bool", seconds: float = 0.0, **values) -> None:
     """Publish a message, and advance the time."""
     publisher = graph.create_node("operator").create_publisher(type_name, topic, 10)
-    server.advance(SECOND // 5)  # time to find the topic
+    server.advance(SECOND_NS // 5)  # time to find the topic
     publisher.publish(get_message(type_name)(**values))
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
 
 
 async def state_after(server, graph, seconds: float):
     """Return the last state after a time."""
     recording = Recording(graph, server.node, STATE)
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
     return recording.last
 
@@ -63,7 +63,7 @@ async def test_load_drains_battery_with_smoothed_current():
     ):
         state = await state_after(server, graph, 1.0)
         assert state.current == pytest.approx(2.0 * (1 - exp(-2)), rel=0.01)
-        server.advance(9 * SECOND)
+        server.advance(9 * SECOND_NS)
         state = await state_after(server, graph, 1.0)
         drained = 2.0 * (11.0 - 0.5) / 3600.0  # 24 W at 12 V for 11 s, less the delay
         assert 2.0 - state.charge == pytest.approx(drained, rel=0.02)
@@ -85,7 +85,7 @@ async def test_voltage_falls_with_charge_and_current():
     )
     text = box("robot", "0 0 5 0 0 0").replace("</model>", battery(parameters) + "</model>")
     async with running_server(text) as (server, graph, _):
-        server.advance(20 * SECOND)
+        server.advance(20 * SECOND_NS)
         state = await state_after(server, graph, 1.0)
         assert state.current * state.voltage == pytest.approx(-24.0, rel=0.01)
         open_circuit_voltage = 12.0 - 4.0 * (1.0 - state.charge / 2.0)
@@ -127,7 +127,7 @@ async def test_battery_is_charged_until_it_is_nearly_full():
         state = await state_after(server, graph, 0.1)
         assert state.charge == pytest.approx(2.0 * (10.1 - 1.0) / 36.0, rel=0.02)
         assert state.power_supply_status == get_message(BATTERY).POWER_SUPPLY_STATUS_CHARGING
-        server.advance(60 * SECOND)
+        server.advance(60 * SECOND_NS)
         assert (await state_after(server, graph, 0.1)).percentage == pytest.approx(0.93, abs=0.03)
         await send(graph, server, "/model/robot/battery/pack/recharge/stop")
         state = await state_after(server, graph, 0.1)
@@ -155,7 +155,7 @@ async def test_state_of_charge_falls_too_fast_only_with_mistakes_of_gazebo():
 
 async def test_empty_battery_is_reported_once():
     async with running_server(powered(f"{DRAINING}<initial_charge>0.0005</initial_charge>")) as (server, _, log):
-        server.advance(5 * SECOND)
+        server.advance(5 * SECOND_NS)
         assert [record.text for record in log] == ["the battery 'pack' of 'robot' is empty"]
 
 
@@ -183,6 +183,6 @@ async def test_thruster_draws_power_and_stops_when_battery_is_empty(control):
         force = server.simulation.data.body("robot::arm").xfrc_applied
         assert force[2] == pytest.approx(10.0)
         assert (await state_after(server, graph, 3.0)).current == pytest.approx(5.0, rel=0.05)
-        server.advance(10 * SECOND)
+        server.advance(10 * SECOND_NS)
         force = server.simulation.data.body("robot::arm").xfrc_applied
         assert force == pytest.approx([0.0] * 6)

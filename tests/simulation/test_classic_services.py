@@ -11,9 +11,9 @@ from linkwright.messages import get_message, get_service
 from linkwright.testing import Recording
 from tests.simulation.test_joint_controllers import arm
 from tests.simulation.test_joint_trajectory import trajectory
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 STATE = (
     '<plugin name="states" filename="libgazebo_ros_state.so"><ros><namespace>/world</namespace></ros>'
@@ -28,8 +28,8 @@ async def call_service(graph, server, service_type: str, service_name: str, /, *
     node = graph.create_node("asker")
     future = node.create_client(service, service_name).call_async(service.Request(**fields))
     await graph.settle()
-    server.advance(SECOND // 1000)
-    response = await asyncio.wait_for(future, SECONDS)
+    server.advance(SECOND_NS // 1000)
+    response = await asyncio.wait_for(future, TIMEOUT_S)
     node.destroy_node()
     return response
 
@@ -58,10 +58,10 @@ async def test_force_acts_in_world_or_link_frame(frame, position):
     text = box_with_force(f"<force_frame>{frame}</force_frame>", yaw=pi / 2)
     async with running_server("<gravity>0 0 0</gravity>", text) as (server, graph, log):
         await push(graph, "/push", (4.0, 0.0, 0.0))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("crate")[:2] == pytest.approx(position, abs=2e-3)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("crate")[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
         assert not log
 
@@ -73,7 +73,7 @@ async def test_forces_of_several_plugins_add_up():
     async with running_server("<gravity>0 0 0</gravity>", text) as (server, graph, log):
         await push(graph, "/push", (4.0, 0.0, 0.0))
         await push(graph, "/two", (0.0, 2.0, 0.0))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("crate")[:2] == pytest.approx((1.0, 0.5), abs=2e-3)
         assert not log
 
@@ -87,7 +87,7 @@ async def test_unknown_force_frame_is_rejected():
 async def test_model_and_link_states_are_published():
     async with running_server(GROUND, robot(), STATE) as (server, graph, log):
         models, links = (Recording(graph, server.node, f"/world/{name}") for name in ("model_states", "link_states"))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(models) == len(links) == 10
         assert models.last.name == ["ground", "mbot"]
@@ -161,7 +161,7 @@ async def test_services_return_properties_and_set_gravity():
         response = await call_service(graph, server, "gazebo_msgs/srv/GetPhysicsProperties", "/get_physics_properties")
         assert (response.time_step, response.gravity.z) == (0.001, 1.0)
         speed = server.simulation.link_velocity("crate::link")[0][2]
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.link_velocity("crate::link")[0][2] - speed == pytest.approx(1.0, abs=1e-6)
         assert not log
 
@@ -177,7 +177,7 @@ async def test_services_change_link_and_joint_properties():
         )
         assert (response.mass, response.izz, response.gravity_mode) == (6.0, pytest.approx(1.0), False)
         height = server.simulation.model_pose("crate")[2]
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(height)
         rejected = await call_service(graph, server, kind, "/set_link_properties", **(facts | {"ixx": 9.0}))
         assert (rejected.success, rejected.status_message) == (
@@ -211,12 +211,12 @@ async def test_joint_pose_trajectory_jumps_between_points():
         await graph.settle()
         positions = []
         for _ in range(3):
-            server.advance(SECOND // 2)
+            server.advance(SECOND_NS // 2)
             positions.append(server.simulation.joint_state("arm::shoulder")[0])
-            server.advance(SECOND // 2)
+            server.advance(SECOND_NS // 2)
         assert positions == pytest.approx([0.3, 0.6, 0.9], abs=1e-6)
         message.joint_names = ["elbow"]
         publisher.publish(message)
         await graph.settle()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert [record.text for record in log] == ["plugin 'poses': there is no movable joint 'elbow'"]

@@ -8,7 +8,7 @@ import pytest
 from linkwright.geometry.single import compose, invert
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import GROUND, box, model
 
 STATE, DETACH, ATTACH = (
@@ -33,7 +33,7 @@ async def send_empty(server, graph, topic: str, seconds: float = 0.5) -> None:
     node = graph.create_node("operator")
     node.create_publisher(get_message("std_msgs/msg/Empty"), topic, 10).publish(get_message("std_msgs/msg/Empty")())
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
     node.destroy_node()
 
@@ -48,7 +48,7 @@ def offset(server) -> np.ndarray:
 async def test_attached_link_is_detached_and_attached_again():
     async with running_server(GROUND, carrier(), LOAD) as (server, graph, log):
         states = Recording(graph, server.node, STATE)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.link_pose("load::link")[:3] == pytest.approx((0.05, 0, 1.75), abs=1e-3)
         await send_empty(server, graph, DETACH)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75 - 9.81 / 8, abs=0.01)
@@ -66,7 +66,7 @@ async def test_attached_link_moves_with_parent():
     async with running_server("<gravity>0 0 0</gravity>", carrier(is_fixed=False), load) as (server, _, log):
         start = offset(server)
         server.simulation.set_model_velocity("carrier", (0.5, 0.0, 0.0), (0.0, 0.0, 2.0))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert offset(server) == pytest.approx(start, abs=1e-3)
         assert server.simulation.link_pose("load::link")[0] > 0.2
         assert not log
@@ -80,7 +80,7 @@ async def test_initial_attach_and_topic_names_can_be_configured():
     detached_load = LOAD.replace("1.75", "1.5")
     async with running_server(GROUND, carrier(extra), detached_load) as (server, graph, log):
         states = Recording(graph, server.node, "/grip")
-        server.advance(SECOND // 5)
+        server.advance(SECOND_NS // 5)
         height = server.simulation.link_pose("load::link")[2]
         assert height == pytest.approx(1.5 - 9.81 / 2 * 0.04, abs=0.01)
         await send_empty(server, graph, "/grab")
@@ -93,20 +93,20 @@ async def test_initial_attach_and_topic_names_can_be_configured():
 
 async def test_late_model_is_attached_and_missing_model_reported_once():
     async with running_server(GROUND, carrier()) as (server, _, log):
-        server.advance(SECOND // 5)
+        server.advance(SECOND_NS // 5)
         assert [record.text for record in log] == [
             "plugin 'gz::sim::systems::DetachableJoint': there is no link 'load::link'"
         ]
         server.spawn(model(LOAD), "load", (0.05, 0.0, 1.75, 0.0, 0.0, 0.0, 1.0))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75, abs=2e-3)
         server.delete("load")
-        server.advance(SECOND // 5)
+        server.advance(SECOND_NS // 5)
         server.spawn(model(LOAD), "load", (0.05, 0.0, 1.7, 0.0, 0.0, 0.0, 1.0))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.7, abs=2e-3)
         server.delete("carrier")
-        server.advance(SECOND // 2)
+        server.advance(SECOND_NS // 2)
         assert server.simulation.link_pose("load::link")[2] < 1.0
         assert len(log) == 1
 
@@ -115,7 +115,7 @@ async def test_reset_attaches_load_again():
     async with running_server(GROUND, carrier(), LOAD) as (server, graph, _):
         await send_empty(server, graph, DETACH, 1.0)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.link_pose("load::link")[:3] == pytest.approx((0.05, 0, 1.75), abs=1e-3)
 
 
@@ -135,10 +135,10 @@ async def test_missing_link_and_parameters_are_reported():
 async def test_replaced_model_keeps_attachment_state():
     async with running_server(GROUND, carrier(), LOAD) as (server, graph, log):
         server.replace_model(model(carrier().replace("0.2 0.2 0.2", "0.2 0.2 0.1")), "carrier")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(1.75, abs=1e-3)
         await send_empty(server, graph, DETACH, 0.2)
         server.replace_model(model(carrier()), "carrier")
-        server.advance(SECOND // 2)
+        server.advance(SECOND_NS // 2)
         assert server.simulation.link_pose("load::link")[2] < 1.0
         assert not log

@@ -7,7 +7,7 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND
 
 
@@ -49,7 +49,7 @@ class DrivenRobot:
         twist.linear.x, twist.angular.z = forward, yaw_rate
         self._publisher.publish(twist)
         await self._graph.settle()
-        self.server.advance(round(seconds * SECOND))
+        self.server.advance(round(seconds * SECOND_NS))
         await self._graph.settle()
 
     @property
@@ -104,7 +104,7 @@ async def test_reset_stops_robot_at_start():
         driven_robot = DrivenRobot(server, graph)
         await driven_robot.drive(0.5, 0.5, 1.0)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert driven_robot.pose[:2] == pytest.approx((0.0, 0.0), abs=1e-3)
         assert driven_robot.odometry.last.pose.pose.position.x == pytest.approx(0.0, abs=1e-3)
@@ -128,7 +128,7 @@ async def test_wheel_transforms_are_published_if_enabled():
     plugin = classic("<publish_wheel_tf>true</publish_wheel_tf>")
     async with running_server(GROUND, robot(plugin)) as (server, graph, log):
         transforms = Recording(graph, server.node, "/tf")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         last = {transform.transforms[0].child_frame_id: transform.transforms[0] for transform in transforms}
         assert sorted(last) == ["base_footprint", "left_wheel", "right_wheel"]
@@ -141,17 +141,17 @@ async def test_wheel_transforms_are_published_if_enabled():
 @pytest.mark.parametrize("plugin", [classic(source=1), gz()], ids=["classic", "gz"])
 async def test_world_poses_are_computed_only_for_subscribers(plugin, monkeypatch):
     async with running_server(GROUND, robot(plugin)) as (server, graph, _):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         refresh_times: list[int] = []
         refresh = server.simulation.refresh
         monkeypatch.setattr(
             server.simulation, "refresh", lambda: (refresh_times.append(server.simulation.time), refresh())
         )
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert not refresh_times
         recording = Recording(graph, server.node, "/odom")
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         assert recording.last.header.stamp.nanosec == 300_000_000
 

@@ -8,11 +8,11 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.test_plugins import running_server as any_running_server
 
 running_server = partial(any_running_server, step=0.01)
-HEIGHTS = (0.0, 3.0, 6.0)
+FLOOR_HEIGHTS = (0.0, 3.0, 6.0)
 INTEGER = "std_msgs/msg/Int32"
 
 
@@ -32,7 +32,7 @@ def elevator(parameters: str = "<open_door_wait_duration>1</open_door_wait_durat
         f'<link name="floor_{number}"><pose>2 0 {height} 0 0 0</pose></link><joint name="slab_{number}" type="fixed">'
         f"<parent>frame</parent><child>floor_{number}</child></joint>"
         + _sliding(f"door_link_{number}", f"door_{number}", "0 1 0", 1.0, f"1 0 {height} 0 0 0")
-        for number, height in enumerate(HEIGHTS)
+        for number, height in enumerate(FLOOR_HEIGHTS)
     )
     plugin = f'<plugin name="gz::sim::systems::Elevator" filename="gz-sim-elevator-system">{parameters}</plugin>'
     return (
@@ -59,7 +59,7 @@ def state(server) -> tuple[float, ...]:
 async def wait(server, graph, seconds: float) -> None:
     """Advance the time in steps, between which messages are delivered."""
     for _ in range(round(seconds * 10)):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
 
 
@@ -139,5 +139,5 @@ async def test_missing_floors_and_unknown_floor_are_reported():
         assert any("there is no link 'level_0'" in record.text for record in log)
     async with running_server(elevator()) as (server, graph, log):
         await order(server, graph, 3)
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert [record.text for record in log] == ["the elevator 'tower' has no floor 3"]

@@ -18,7 +18,7 @@ from linkwright.testing import Recording, SteppedSimulation
 from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.sensors.rooms import block
 from tests.simulation.sensors.test_topics import CAMERA, RAYS, plugin, robot_with, sensor
-from tests.simulation.test_plugins import SECOND, joint_states, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, joint_states, robot, running_server
 from tests.simulation.worlds import GROUND
 
 STRING, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
@@ -135,7 +135,7 @@ async def _advance(server, graph) -> None:
     """Advance one second in steps, and deliver messages between them."""
     for _ in range(10):
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
 
 
@@ -185,6 +185,6 @@ async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
     async with running_server(block("wall", "2.5 0 0 0 0 0", "1 20 20"), robot) as (server, _, log):
         assert len(server.plugins("robot")) == 1
         monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: rng.randrange(2))
-        server.advance(4 * SECOND)
+        server.advance(4 * SECOND_NS)
         assert len(server.plugins("robot")) == 1
         assert not [record.text for record in log if record.level >= LogLevel.ERROR]

@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.messages import get_message, get_service
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import GROUND, box
 
 # --- grasp fix --------------------------------------------------------------------------------------------------------
@@ -59,14 +59,14 @@ async def test_gripped_object_stays_until_fingers_open():
     for extra in ("", "<disable_collisions_on_attach>true</disable_collisions_on_attach>"):
         async with running_server(hand(extra), EGG, gravity="0 0 -0.02") as (server, graph, log):
             await squeeze(graph, 5.0)
-            server.advance(SECOND)
+            server.advance(SECOND_NS)
             held_height = height(server)
             server.simulation.set_gravity((0.0, 0.0, -9.81))
-            server.advance(SECOND)
+            server.advance(SECOND_NS)
             assert height(server) == pytest.approx(held_height, abs=0.002)
             assert not log
             await squeeze(graph, -1.0)
-            server.advance(SECOND)
+            server.advance(SECOND_NS)
             assert height(server) < 0.5
 
 
@@ -76,16 +76,16 @@ async def test_object_slips_without_plugin_or_with_force_from_one_side():
     for text in (hand_without_plugin, one_sided):
         async with running_server(text, EGG, gravity="0 0 -0.02") as (server, graph, _):
             await squeeze(graph, 5.0)
-            server.advance(SECOND)
+            server.advance(SECOND_NS)
             server.simulation.set_gravity((0.0, 0.0, -9.81))
-            server.advance(SECOND)
+            server.advance(SECOND_NS)
             assert height(server) < 0.5
 
 
 async def test_reset_releases_object():
     async with running_server(hand(), EGG, gravity="0 0 -0.02") as (server, graph, _):
         await squeeze(graph, 5.0)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.scene.is_welded("hand::palm", "egg::link")
         server.reset()
         assert not server.simulation.scene.is_welded("hand::palm", "egg::link")
@@ -94,9 +94,9 @@ async def test_reset_releases_object():
 async def test_object_that_is_deleted_in_gripper_is_forgotten():
     async with running_server(hand(), EGG, gravity="0 0 -0.02") as (server, graph, log):
         await squeeze(graph, 5.0)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         server.delete("egg")
-        server.advance(SECOND // 2)
+        server.advance(SECOND_NS // 2)
         assert not log
 
 
@@ -124,7 +124,7 @@ async def call(server, graph, type_name: str, service: str, **values):
         .call_async(get_service(type_name).Request(**values))
     )
     await graph.settle()
-    server.advance(SECOND // 1000)
+    server.advance(SECOND_NS // 1000)
     await graph.settle()
     return future.result()
 
@@ -136,11 +136,11 @@ async def test_switched_on_gripper_attracts_close_links():
     far_box = box("far", "0 0.5 1 0 0 0", "0.02 0.02 0.02", 0.01)
     async with running_server(cup(), LEAF, far_box, gravity="0 0 0") as (server, graph, log):
         recording = Recording(graph, server.node, "/grasping")
-        server.advance(SECOND // 1000)
+        server.advance(SECOND_NS // 1000)
         await graph.settle()
         assert not recording.last.data
         assert (await call(server, graph, "std_srvs/srv/SetBool", "/switch", data=True)).success
-        server.advance(SECOND // 1000)
+        server.advance(SECOND_NS // 1000)
         forces = [server.simulation.data.body(f"{name}::link").xfrc_applied[2] for name in ("leaf", "far")]
         await graph.settle()
         assert forces == pytest.approx([1.0, 0.0])
@@ -149,7 +149,7 @@ async def test_switched_on_gripper_attracts_close_links():
         assert not (await call(server, graph, "std_srvs/srv/SetBool", "/switch", data=True)).success
         assert [record.text for record in log] == ["the gripper is already on"]
         assert (await call(server, graph, "std_srvs/srv/SetBool", "/switch", data=False)).success
-        server.advance(SECOND // 1000)
+        server.advance(SECOND_NS // 1000)
         assert server.simulation.data.body("leaf::link").xfrc_applied[2] == 0.0
 
 
@@ -162,7 +162,7 @@ async def test_exempted_model_and_greater_distance_are_not_attracted():
             _,
         ):
             await call(server, graph, "std_srvs/srv/SetBool", "/switch", data=True)
-            server.advance(SECOND // 1000)
+            server.advance(SECOND_NS // 1000)
             assert server.simulation.data.body("leaf::link").xfrc_applied[2] == pytest.approx(force)
 
 
@@ -172,10 +172,10 @@ async def test_gripper_of_ros_1_holds_object_against_gravity():
         server, graph, _ = running
         recording = Recording(graph, server.node, "/arm/holding")
         await call(server, graph, "std_srvs/srv/Empty", "/arm/on")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert recording.last.data
         assert height(server) == pytest.approx(1.0, abs=0.05)
         await call(server, graph, "std_srvs/srv/Empty", "/arm/off")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert height(server) < 0.1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.messages import get_message
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 
 GRAVITY_TORQUE = 1.0 * 9.81 * 0.5
 """The torque of gravity on the level arm in N m."""
@@ -43,19 +43,19 @@ async def command(graph, server, topic: str, value: float, seconds: float) -> No
     node = graph.create_node("commander")
     node.create_publisher("std_msgs/msg/Float64", topic, 10).publish(get_message("std_msgs/msg/Float64")(data=value))
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     node.destroy_node()
 
 
 async def test_position_controller_holds_joint_within_velocity_limit():
     text = arm(position_controller("<use_velocity_commands>true</use_velocity_commands>"), "<velocity>0.5</velocity>")
     async with running_server(text) as (server, graph, log):
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.0, abs=2e-3)
         await command(graph, server, "/model/arm/joint/shoulder/_0/cmd_pos", 1.0, 1.0)
         angle, speed = server.simulation.joint_state("arm::shoulder")
         assert (angle, speed) == pytest.approx((0.5, 0.5), abs=0.03)
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         angle, speed = server.simulation.joint_state("arm::shoulder")
         assert (angle, speed) == pytest.approx((1.0, 0.0), abs=2e-3)
         assert not log
@@ -67,7 +67,7 @@ async def test_position_controller_respects_limits_and_reset():
         await command(graph, server, "/reach", 5.0, 3.0)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(2.0, abs=2e-3)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.0, abs=2e-3)
         assert not log
 
@@ -75,7 +75,7 @@ async def test_position_controller_respects_limits_and_reset():
 async def test_position_controller_without_integral_gain_sags_under_gravity():
     gains = "<p_gain>100</p_gain><i_gain>0</i_gain><d_gain>20</d_gain>"
     async with running_server(arm(position_controller(gains))) as (server, _, log):
-        server.advance(5 * SECOND)
+        server.advance(5 * SECOND_NS)
         angle, speed = server.simulation.joint_state("arm::shoulder")
         assert 100.0 * angle == pytest.approx(GRAVITY_TORQUE, rel=0.01)
         assert speed == pytest.approx(0.0, abs=1e-4)
@@ -123,6 +123,6 @@ async def test_joint_force_acts_until_changed_or_reset():
         await command(graph, server, "/model/arm/joint/shoulder/cmd_force", -0.7, 1.0)
         assert server.simulation.joint_state("arm::shoulder")[1] == pytest.approx(0.0, abs=0.01)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.joint_state("arm::shoulder") == pytest.approx((0.0, 0.0), abs=1e-6)
         assert not log

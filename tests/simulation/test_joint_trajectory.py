@@ -7,7 +7,7 @@ import pytest
 from linkwright.messages import Duration, Time, get_message
 from linkwright.testing import Recording
 from tests.simulation.test_joint_controllers import arm
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 
 TOPIC = "/model/arm/joint_trajectory"
 GAINS = (
@@ -28,7 +28,7 @@ def trajectory(*points: tuple[float, float], name: str = "shoulder", stamp: int 
     message.header.stamp = Time(sec=stamp, nanosec=0)
     for seconds, position in points:
         point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[position])
-        point.time_from_start = Duration(sec=int(seconds), nanosec=round(seconds % 1 * SECOND))
+        point.time_from_start = Duration(sec=int(seconds), nanosec=round(seconds % 1 * SECOND_NS))
         message.points.append(point)
     return message
 
@@ -38,7 +38,7 @@ async def follow(graph, server, message, seconds: float) -> None:
     node = graph.create_node("planner")
     node.create_publisher("trajectory_msgs/msg/JointTrajectory", TOPIC, 10).publish(message)
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
     node.destroy_node()
 
@@ -50,17 +50,17 @@ async def test_joints_hold_each_point_until_next_is_due():
         log,
     ):
         progress = Recording(graph, server.node, f"{TOPIC}_progress")
-        server.advance(3 * SECOND)
+        server.advance(3 * SECOND_NS)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.5, abs=5e-3)
         await follow(graph, server, trajectory((0.0, 0.2), (3.0, -0.4), (6.0, 1.0)), 2.9)
         assert [message.data for message in progress] == pytest.approx([1 / 3, 2 / 3])
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(-0.4, abs=5e-3)
-        server.advance(4 * SECOND)
+        server.advance(4 * SECOND_NS)
         await graph.settle()
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(1.0, abs=5e-3)
         assert progress.last.data == 1.0
         server.reset()
-        server.advance(3 * SECOND)
+        server.advance(3 * SECOND_NS)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.5, abs=5e-3)
         assert not log
 
@@ -75,7 +75,7 @@ async def test_header_start_time_delays_trajectory():
 
 async def test_efforts_alone_are_applied_without_gains():
     async with running_server(arm(controller("<joint_name>shoulder</joint_name>"))) as (server, graph, log):
-        server.advance(3 * SECOND)
+        server.advance(3 * SECOND_NS)
         assert server.simulation.joint_state("arm::shoulder")[0] > 1.0
         message = trajectory((0.0, 0.0))
         message.points[0].effort = [-30.0]

@@ -6,11 +6,11 @@ import pytest
 
 from linkwright.messages import get_message
 from tests.simulation.fluids.server import running_server, weightless_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import box, model
 
 WRENCH, ENTITY = "ros_gz_interfaces/msg/EntityWrench", "ros_gz_interfaces/msg/Entity"
-LINK, MODEL = 3, 2
+ENTITY_LINK, ENTITY_MODEL = 3, 2
 
 
 def plugin(parameters: str = "") -> str:
@@ -52,50 +52,50 @@ CRATE = box("crate", "0 0 5 0 0 0", "1 1 1", 6.0)  # an inertia of 1 kg m2
 @pytest.mark.parametrize(("name", "kind"), [("crate", "model"), ("crate::link", "link"), ("link", "link")])
 async def test_persistent_wrench_of_world_file_acts_all_the_time(name, kind):
     async with weightless_server(plugin(persistent(name, kind)), CRATE) as (server, _, log):
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert motion(server) == pytest.approx((-10.0 / 6.0, 0.5), rel=0.02)
         assert not log
 
 
 async def test_wrench_acts_for_one_step():
     async with weightless_server(plugin(), CRATE) as (server, graph, log):
-        await send(graph, "/world/test/wrench", wrench("crate", MODEL, 600.0, 20.0))
-        server.advance(SECOND)
+        await send(graph, "/world/test/wrench", wrench("crate", ENTITY_MODEL, 600.0, 20.0))
+        server.advance(SECOND_NS)
         assert motion(server) == pytest.approx((600.0 * 0.01 / 6.0, 20.0 * 0.01), rel=1e-3)
         assert not log
 
 
 async def test_persistent_wrenches_add_up_until_they_are_cleared():
     async with weightless_server(plugin(), CRATE) as (server, graph, _):
-        await send(graph, "/world/test/wrench/persistent", wrench("crate", MODEL, 6.0))
-        await send(graph, "/world/test/wrench/persistent", wrench("crate::link", LINK, 6.0))
-        server.advance(SECOND)
+        await send(graph, "/world/test/wrench/persistent", wrench("crate", ENTITY_MODEL, 6.0))
+        await send(graph, "/world/test/wrench/persistent", wrench("crate::link", ENTITY_LINK, 6.0))
+        server.advance(SECOND_NS)
         assert motion(server)[0] == pytest.approx(2.0, rel=0.02)
-        message = get_message(ENTITY)(name="crate", type=MODEL)
+        message = get_message(ENTITY)(name="crate", type=ENTITY_MODEL)
         await send(graph, "/world/test/wrench/clear", message)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert motion(server)[0] == pytest.approx(3.0, rel=0.02)  # the wrench on the link remains
-        message = get_message(ENTITY)(name="link", type=LINK)
+        message = get_message(ENTITY)(name="link", type=ENTITY_LINK)
         await send(graph, "/world/test/wrench/clear", message)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert motion(server)[0] == pytest.approx(3.0, rel=0.03)
 
 
 async def test_persistent_wrench_awaits_model():
     async with weightless_server(plugin(persistent("late", "model")), CRATE) as (server, _, log):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         server.simulation.spawn(model(box("late", "9 0 5 0 0 0", "1 1 1", 6.0)), "late")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert motion(server, "late")[0] == pytest.approx(-10.0 / 6.0, rel=0.03)
         server.delete("late")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert not log
 
 
 async def test_unknown_entity_and_wrong_type_are_reported():
     async with running_server(plugin(), CRATE) as (server, graph, log):
-        await send(graph, "/world/test/wrench", wrench("ghost", MODEL, 6.0))
-        server.advance(SECOND // 10)
+        await send(graph, "/world/test/wrench", wrench("ghost", ENTITY_MODEL, 6.0))
+        server.advance(SECOND_NS // 10)
         assert [record.text for record in log] == ["there is no model or link 'ghost'"]
     async with running_server(plugin(persistent("crate", "visual")), CRATE) as (_, __, log):
         assert any("<persistent> needs" in record.text for record in log)
@@ -104,7 +104,7 @@ async def test_unknown_entity_and_wrong_type_are_reported():
 async def test_force_acts_at_origin_of_link():
     text = CRATE.replace("<inertial>", "<inertial><pose>0 1 0 0 0 0</pose>")
     async with weightless_server(plugin(persistent("crate", "model", torque="0 0 0")), text) as (server, _, __):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         torque = server.simulation.data.body("crate::link").xfrc_applied[5]
         assert torque == pytest.approx(-10.0, rel=0.01)
 
@@ -112,10 +112,10 @@ async def test_force_acts_at_origin_of_link():
 async def test_topics_are_parameters_and_reset_restores_wrenches():
     parameters = "<topic>/a</topic><topic_persistent>/b</topic_persistent><topic_clear>/c</topic_clear>"
     async with weightless_server(plugin(parameters + persistent("crate", "model")), CRATE) as (server, graph, _):
-        await send(graph, "/b", wrench("crate", MODEL, 60.0))
-        await send(graph, "/a", wrench("crate", MODEL, 60.0))
-        server.advance(SECOND // 10)
+        await send(graph, "/b", wrench("crate", ENTITY_MODEL, 60.0))
+        await send(graph, "/a", wrench("crate", ENTITY_MODEL, 60.0))
+        server.advance(SECOND_NS // 10)
         assert motion(server)[0] > 0.0
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert motion(server)[0] == pytest.approx(-10.0 / 6.0, rel=0.02)

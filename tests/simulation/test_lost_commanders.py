@@ -11,7 +11,7 @@ from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.test_ackermann import car, plugin
 from tests.simulation.test_diff_drive import classic, gz
 from tests.simulation.test_movers import moving_box, planar
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND
 
 Twist = get_message("geometry_msgs/msg/Twist")
@@ -135,7 +135,7 @@ async def test_drive_with_two_topic_names_tracks_last_commander() -> None:
 async def advance(server, graph, seconds: float) -> None:
     """Advance the time, and deliver messages before and after."""
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
 
 

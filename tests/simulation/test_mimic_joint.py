@@ -11,7 +11,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import LogLevel
 from linkwright.sdf.from_urdf import model_from_robot
 from tests.simulation.ros2_control.test_plugin import ControlledRobot
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import GROUND, box
 
 LIBRARIES = (
@@ -52,7 +52,7 @@ class Gripper:
         """Move the left joint, and return the position of the right one after a time."""
         for _ in range(round(seconds * 100)):
             self._servo.move(position, 0.01)
-            self.server.advance(SECOND // 100)
+            self.server.advance(SECOND_NS // 100)
         return self.server.simulation.joint_state("gripper::right_joint")[0]
 
     @property
@@ -194,7 +194,7 @@ async def test_joint_does_not_jump_when_world_restarts():
     async with running(gripper("")) as robot:
         assert robot.close(0.5) == pytest.approx(0.5, abs=0.01)
         robot.server.reset()
-        robot.server.advance(SECOND // 1000)
+        robot.server.advance(SECOND_NS // 1000)
         assert robot.server.simulation.joint_state("gripper::right_joint") == pytest.approx((0.0, 0.0), abs=0.01)
 
 
@@ -217,12 +217,12 @@ def ball(library: str, link: str = "link") -> str:
 async def test_disabled_link_floats_until_something_touches_it(library):
     hammer = box("hammer", "0 0 5 0 0 0")
     async with running_server(GROUND, ball(library), hammer) as (server, _, log):
-        server.advance(SECOND // 4)
+        server.advance(SECOND_NS // 4)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(3.0, abs=1e-6)
-        server.advance(2 * SECOND)  # the other box falls on it
+        server.advance(2 * SECOND_NS)  # the other box falls on it
         assert server.simulation.model_pose("crate")[2] < 1.0
         server.reset()
-        server.advance(SECOND // 4)
+        server.advance(SECOND_NS // 4)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(3.0, abs=1e-6)
         assert log == []
 

@@ -9,7 +9,7 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
 FRICTIONLESS = "<surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction></surface>"
@@ -22,7 +22,7 @@ async def drive(server, graph, forward=0.0, sideways=0.0, yaw_rate=0.0, seconds=
     node = graph.create_node("driver")
     node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10).publish(twist)
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
     node.destroy_node()
 
@@ -58,7 +58,7 @@ async def test_planar_move_overcomes_wheel_friction_and_resets():
         await drive(server, graph, sideways=0.5)
         assert server.simulation.model_pose("mbot")[1] == pytest.approx(0.5, abs=0.03)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("mbot")[:2] == pytest.approx((0.0, 0.0), abs=1e-3)
         assert not log
 
@@ -66,7 +66,7 @@ async def test_planar_move_overcomes_wheel_friction_and_resets():
 async def test_planar_move_of_static_model_is_reported():
     text = moving_box(planar()).replace("<link", "<static>true</static><link", 1)
     async with running_server(GROUND, text) as (server, _, log):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert not server.plugins("mbot")
         assert [record.text for record in log if "fixed to the world" in record.text]
 

@@ -11,10 +11,10 @@ from tests.simulation.test_lost_commanders import advance, forward, warnings
 from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND
 
-FORCE, MOMENT = 8.54858e-06, 0.016
+FORCE_CONSTANT, MOMENT_CONSTANT = 8.54858e-06, 0.016
 POSITIONS = {"front_right": (0.13, -0.2, "ccw"), "back_left": (-0.13, 0.2, "ccw"), "front_left": (0.13, 0.2, "cw")}
 POSITIONS["back_right"] = (-0.13, -0.2, "cw")
-MASS = 1.5
+MASS_KG = 1.5
 
 
 def rotor(name: str, x: float, y: float) -> str:
@@ -32,7 +32,7 @@ def motor(number: int, name: str, direction: str) -> str:
         f"<robotNamespace>X3</robotNamespace><jointName>{name}_joint</jointName><linkName>{name}</linkName>"
         f"<turningDirection>{direction}</turningDirection><timeConstantUp>0.0125</timeConstantUp>"
         f"<timeConstantDown>0.025</timeConstantDown><maxRotVelocity>800</maxRotVelocity>"
-        f"<motorConstant>{FORCE}</motorConstant><momentConstant>{MOMENT}</momentConstant>"
+        f"<motorConstant>{FORCE_CONSTANT}</motorConstant><momentConstant>{MOMENT_CONSTANT}</momentConstant>"
         f"<actuator_number>{number}</actuator_number><rotorDragCoefficient>8.06428e-05</rotorDragCoefficient>"
         "<rollingMomentCoefficient>1e-06</rollingMomentCoefficient><motorType>velocity</motorType></plugin>"
     )
@@ -40,7 +40,7 @@ def motor(number: int, name: str, direction: str) -> str:
 
 def control(names: list[str]) -> str:
     rotors = "".join(
-        f"<rotor><jointName>{name}_joint</jointName><forceConstant>{FORCE}</forceConstant><momentConstant>{MOMENT}"
+        f"<rotor><jointName>{name}_joint</jointName><forceConstant>{FORCE_CONSTANT}</forceConstant><momentConstant>{MOMENT_CONSTANT}"
         f"</momentConstant><direction>{1 if POSITIONS[name][2] == 'ccw' else -1}</direction></rotor>"
         for name in names
     )
@@ -59,7 +59,7 @@ def quadcopter(names: list[str] | None = None) -> str:
         motor(number, name, direction) for number, (name, (_, _, direction)) in enumerate(POSITIONS.items())
     )
     return (
-        f'<model name="x3"><pose>0 0 0.1 0 0 0</pose><link name="body"><inertial><mass>{MASS - 0.02}</mass><inertia>'
+        f'<model name="x3"><pose>0 0 0.1 0 0 0</pose><link name="body"><inertial><mass>{MASS_KG - 0.02}</mass><inertia>'
         "<ixx>0.0347563</ixx><iyy>0.07</iyy><izz>0.0977</izz></inertia></inertial><collision name='c'><geometry><box>"
         f"<size>0.47 0.47 0.11</size></box></geometry></collision></link>{rotors}{motors}"
         f"{control(list(POSITIONS) if names is None else names)}</model>"
@@ -93,7 +93,7 @@ async def test_multicopter_rises_hovers_and_flies_forward() -> None:
         await advance(server, graph, 3.0)
         assert velocity(server) == pytest.approx([0.0, 0.0, 0.0], abs=0.01)
         motors = [plugin for plugin in server.plugins("x3") if hasattr(plugin, "speed")]
-        assert sum(FORCE * motor.speed**2 for motor in motors) == pytest.approx(MASS * 9.8, rel=1e-3)
+        assert sum(FORCE_CONSTANT * motor.speed**2 for motor in motors) == pytest.approx(MASS_KG * 9.8, rel=1e-3)
         driver.publish(forward(1.0))
         await advance(server, graph, 4.0)
         assert velocity(server)[0] == pytest.approx(1.0, abs=0.1)
@@ -105,7 +105,7 @@ async def test_rotor_speeds_can_be_commanded_by_actuator_number() -> None:
     async with running_server(GROUND, quadcopter()) as (server, graph, log):
         message_type = get_message("actuator_msgs/msg/Actuators")
         driver = graph.create_node("driver").create_publisher(message_type, "/X3/command/motor_speed", 10)
-        hover_speed = (MASS * 9.8 / 4 / FORCE) ** 0.5
+        hover_speed = (MASS_KG * 9.8 / 4 / FORCE_CONSTANT) ** 0.5
         driver.publish(message_type(velocity=[1.1 * hover_speed] * 4))
         await advance(server, graph, 1.0)
         assert velocity(server)[2] == pytest.approx(0.21 * 9.8, rel=0.15)
@@ -152,7 +152,7 @@ async def test_rotors_that_cannot_control_flight_are_rejected() -> None:
 
 
 async def test_rotor_with_missing_constant_is_reported() -> None:
-    text = quadcopter().replace(f"<momentConstant>{MOMENT}</momentConstant><direction>", "<direction>")
+    text = quadcopter().replace(f"<momentConstant>{MOMENT_CONSTANT}</momentConstant><direction>", "<direction>")
     async with running_server(GROUND, text) as (_, __, log):
         (logged,) = warnings(log)
         assert "<rotor> needs a number in <momentConstant>" in logged

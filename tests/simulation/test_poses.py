@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
 
@@ -23,7 +23,7 @@ def _translation(transform):
 async def test_link_poses_are_published_as_separate_messages():
     async with running_server(GROUND, robot(poses("<update_frequency>10</update_frequency>"))) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/mbot/pose")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 5 * 10
         assert [transform.child_frame_id for transform in recording][-5:] == [
@@ -48,7 +48,7 @@ async def test_static_poses_have_separate_topic():
     )
     async with running_server(GROUND, robot(poses(settings))) as (server, graph, log):
         moving, resting = (Recording(graph, server.node, f"/model/mbot/{topic}") for topic in ("pose", "pose_static"))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert (len(moving), len(resting)) == (50, 1)
         assert [transform.child_frame_id for transform in moving.last.transforms] == [
@@ -77,7 +77,7 @@ async def test_nested_model_poses_are_published():
     )
     async with running_server(outer_model) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/outer/pose")
-        server.advance(SECOND // 100)
+        server.advance(SECOND_NS // 100)
         await graph.settle()
         assert len(recording) == 10
         poses_by_frame = {
@@ -97,7 +97,7 @@ async def test_static_model_publishes_poses():
     text = fixed_model.replace("</model>", poses("<publish_model_pose>1</publish_model_pose>") + "</model>")
     async with running_server(text) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/one/pose")
-        server.advance(SECOND // 1000)
+        server.advance(SECOND_NS // 1000)
         await graph.settle()
         assert [(transform.child_frame_id, _translation(transform)) for transform in recording] == [
             ("one", pytest.approx((0.0, 0.0, 1.0))),

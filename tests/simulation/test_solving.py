@@ -11,11 +11,11 @@ from linkwright.simulation.simulation import Simulation
 from linkwright.simulation.solving import Solving
 from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 
-ROBOTS = 9
+ROBOT_COUNT = 9
 CHECK_PERIOD = 20 * NANOSECONDS_PER_SECOND // 1000
 
 
-def driving_robots(*extra_models: str, robots: int = ROBOTS) -> Simulation:
+def driving_robots(*extra_models: str, robots: int = ROBOT_COUNT) -> Simulation:
     """Return robots side by side that drive straight, each a little faster than the previous one."""
     robot_models = [
         mbot(f"0 {number} 0.11 0 0 0").replace('name="mbot"', f'name="mbot{number}"', 1) for number in range(robots)
@@ -68,7 +68,7 @@ def test_resting_boxes_fall_asleep_while_robots_drive():
     assert is_solved_jointly(simulation)  # the boxes are still moving
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert not is_solved_jointly(simulation)
-    assert simulation.data.ntree_awake == ROBOTS
+    assert simulation.data.ntree_awake == ROBOT_COUNT
     simulation.push("box0::link", (0.0, 0.0, 20.0))
     simulation.advance(100 * NANOSECONDS_PER_SECOND // 1000)
     assert simulation.link_pose("box0::link")[2] > 0.11
@@ -97,9 +97,9 @@ def test_reset_is_bitwise_reproducible():
     first_positions = simulation.data.qpos.tobytes()
     simulation.reset()
     assert not is_solved_jointly(simulation)
-    for number in range(ROBOTS):
+    for number in range(ROBOT_COUNT):
         assert simulation.model_pose(f"mbot{number}")[0] == pytest.approx(0.0)
-    simulation.data.ctrl[:] = np.repeat(1.0 + np.arange(ROBOTS), 2)
+    simulation.data.ctrl[:] = np.repeat(1.0 + np.arange(ROBOT_COUNT), 2)
     simulation.advance(NANOSECONDS_PER_SECOND // 2)
     assert simulation.data.qpos.tobytes() == first_positions
 

@@ -14,7 +14,7 @@ from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 
 MILLISECOND = NANOSECONDS_PER_SECOND // 1000
-G = 9.81
+GRAVITY = 9.81
 
 
 def part(mass: float, moment: float, geometry: str = "", surface: str = "") -> str:
@@ -56,7 +56,7 @@ def test_pendulum_has_textbook_period():
             crossings.append(simulation.seconds - 0.001 * angle_now / (angle_now - last))
         last = angle_now
     periods = [later - earlier for earlier, later in itertools.pairwise(crossings)]
-    expected = 2 * pi * sqrt(length / G) * (1 + angle**2 / 16)
+    expected = 2 * pi * sqrt(length / GRAVITY) * (1 + angle**2 / 16)
     assert len(periods) >= 3
     assert periods == pytest.approx([expected] * len(periods), rel=1e-3)
 
@@ -72,7 +72,7 @@ def test_block_on_slope_sticks_or_slides(mu, slides):
     x, _, z = simulation.model_pose("block")[:3]
     distance = hypot(x, z - height)
     if slides:
-        assert distance == pytest.approx(G * (sin(angle) - mu * cos(angle)) / 2, rel=0.05)
+        assert distance == pytest.approx(GRAVITY * (sin(angle) - mu * cos(angle)) / 2, rel=0.05)
     else:
         assert distance < 2e-3
 
@@ -85,7 +85,7 @@ def test_ball_rolls_down_slope():
     simulation = make_simulation(slope(angle), ball)
     simulation.advance(NANOSECONDS_PER_SECOND)
     speed = simulation.link_velocity("ball::l")[0]
-    assert hypot(*speed) == pytest.approx(5 / 7 * G * sin(angle), rel=0.01)
+    assert hypot(*speed) == pytest.approx(5 / 7 * GRAVITY * sin(angle), rel=0.01)
 
 
 def test_collision_conserves_momentum():

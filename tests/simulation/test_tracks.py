@@ -9,7 +9,7 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import GROUND, box
 
 FLOAT = "std_msgs/msg/Float64"
@@ -41,16 +41,16 @@ def position(server, name: str) -> tuple[float, ...]:
 async def test_conveyor_carries_parcel_forward_and_stops():
     async with running_server(conveyor(), PARCEL) as (server, graph, log):
         odometry = Recording(graph, server.node, "/model/conveyor/link/belt/odometry")
-        server.advance(3 * SECOND)  # the parcel falls asleep
+        server.advance(3 * SECOND_NS)  # the parcel falls asleep
         await send(graph, BELT_TOPIC, 0.5)
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         await graph.settle()
         assert position(server, "parcel") == pytest.approx((1.0, 0.0), abs=0.05)
         assert odometry.last.pose.pose.position.x == pytest.approx(1.0, abs=0.01)
         assert odometry.last.twist.twist.linear.x == 0.5
         assert not log
         await send(graph, BELT_TOPIC, 0.0, "other")
-        server.advance(SECOND // 2)
+        server.advance(SECOND_NS // 2)
         assert server.simulation.link_velocity("parcel::link")[0][0] == pytest.approx(0.0, abs=1e-3)
 
 
@@ -61,7 +61,7 @@ async def test_belt_moves_in_direction_of_turned_link_and_track():
     ):
         async with running_server(conveyor(parameters, pose), PARCEL) as (server, graph, _):
             await send(graph, BELT_TOPIC, 0.2)
-            server.advance(SECOND)
+            server.advance(SECOND_NS)
             assert position(server, "parcel") == pytest.approx((0.0, 0.2), abs=0.02)
 
 
@@ -73,7 +73,7 @@ async def test_speed_is_limited_and_command_expires():
         odometry = Recording(graph, server.node, "/gone")
         await send(graph, "/go", 5.0)
         for seconds, speed in ((0.25, 0.15), (0.5, 0.3), (0.5, 0.0)):
-            server.advance(round(seconds * SECOND))
+            server.advance(round(seconds * SECOND_NS))
             await graph.settle()
             assert odometry.last.twist.twist.linear.x == pytest.approx(speed, abs=0.01)
 
@@ -112,7 +112,7 @@ async def drive(server, graph, forward: float, turning: float, seconds: float) -
     node.create_publisher("geometry_msgs/msg/Twist", "/model/tank/cmd_vel", 10).publish(twist)
     for _ in range(round(seconds * 50)):
         await graph.settle()
-        server.advance(SECOND // 50)
+        server.advance(SECOND_NS // 50)
 
 
 async def test_vehicle_drives_straight_and_publishes_odometry():
@@ -166,5 +166,5 @@ async def test_missing_track_is_reported():
 async def test_belt_keeps_its_direction_while_nothing_touches_it():
     async with running_server(conveyor(), PARCEL.replace("0 0 0.3", "0 0 1")) as (server, graph, _):
         await send(graph, BELT_TOPIC, 0.5)
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         assert position(server, "parcel")[0] > 0.6

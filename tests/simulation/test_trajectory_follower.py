@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.messages import get_message
 from tests.simulation.fluids.server import running_server, weightless_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import box
 
 PAUSE = "/model/cart/trajectory_follower/pause"
@@ -28,7 +28,7 @@ def waypoints(*points: str) -> str:
 
 def wrench(server) -> list[float]:
     """Return the force and the torque on the cart, after one step."""
-    server.advance(SECOND // 100)
+    server.advance(SECOND_NS // 100)
     return server.simulation.data.body("cart::link").xfrc_applied.tolist()
 
 

@@ -8,7 +8,7 @@ from linkwright.messages import get_message
 from linkwright.simulation.plugins.protobuf_text import TextFormatError, message_of, parse_fields
 from linkwright.testing import Recording
 from tests.simulation.fluids.server import running_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 
 EMPTY_OUTPUT = '<output type="gz.msgs.Empty" topic="/out"/>'
 
@@ -28,7 +28,7 @@ async def count_triggers(text: str, type_name: str, *messages) -> int:
         for message in messages:
             publisher.publish(message)
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         assert not log
         return len(recording)
@@ -94,17 +94,17 @@ async def test_outputs_are_published_after_delay():
         publisher = graph.create_node("operator").create_publisher("std_msgs/msg/Bool", "/in", 10)
         publisher.publish(get_message("std_msgs/msg/Bool")())
         await graph.settle()
-        server.advance(SECOND // 10 * 4)
+        server.advance(SECOND_NS // 10 * 4)
         await graph.settle()
         assert not len(twists)
-        server.advance(SECOND // 10 * 2)
+        server.advance(SECOND_NS // 10 * 2)
         await graph.settle()
         assert (twists.last.linear.x, twists.last.angular.z, texts.last.data) == (3.0, -1.0, "go")
         publisher.publish(get_message("std_msgs/msg/Bool")())
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(twists) == 1
 

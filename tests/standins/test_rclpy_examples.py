@@ -21,7 +21,7 @@ from rclpy.parameter import Parameter
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from std_msgs.msg import Int64MultiArray, String
 
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 
 @pytest.fixture(autouse=True)
@@ -48,7 +48,7 @@ class TestMessageSnapshots:
             message.data = word
             publisher.publish(message)
         for _ in range(3):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert texts == ["one", "two", "three"]
 
     def test_subscription_callbacks_receive_separate_copies(self, node):
@@ -63,7 +63,7 @@ class TestMessageSnapshots:
         sent = Int64MultiArray(data=[7])
         node.create_publisher(Int64MultiArray, "topic", 10).publish(sent)
         for _ in range(2):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert sequences == [[7, 1], [7, 1]]
         assert sent.data.tolist() == [7]
 
@@ -79,7 +79,7 @@ class TestMessageSnapshots:
             request.a = number
             futures.append(client.call_async(request))
         for future in futures:
-            rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
+            rclpy.spin_until_future_complete(node, future, timeout_sec=TIMEOUT_S)
         assert [future.result().sum for future in futures] == [0, 1, 2]
 
     def test_growing_feedback_is_sent_as_snapshot(self, node):
@@ -164,7 +164,7 @@ class TestOwnParts:
         urgent = rclpy.create_node("urgent")
 
         def block(_message):
-            slow.wait(SECONDS)
+            slow.wait(TIMEOUT_S)
             order.append("slow")
 
         node.create_subscription(String, "slow", block, 10)
@@ -174,7 +174,7 @@ class TestOwnParts:
         executor.add_node(node)
         for topic in ("slow", "urgent"):
             node.create_publisher(String, topic, 10).publish(String())
-        deadline = time.monotonic() + SECONDS
+        deadline = time.monotonic() + TIMEOUT_S
         while len(order) < 2 and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         for pool in (executor.high, executor.low):
@@ -196,7 +196,7 @@ class TestOwnParts:
         executor = EventsExecutor()
         executor.add_node(node)
         future = executor.create_task(lambda: "done")
-        executor.spin_until_future_complete(future, timeout_sec=SECONDS)
+        executor.spin_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert future.result() == "done"
 
 
@@ -221,10 +221,10 @@ class TestEvents:
             ),
         )
         for _ in range(2):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert sorted(event_counts) == [("in", 1), ("out", 1)]
         node.destroy_subscription(subscription)
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert event_counts[-1] == ("out", 0)
 
 

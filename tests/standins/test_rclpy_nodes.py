@@ -30,7 +30,7 @@ from rclpy.task import Future
 from std_msgs.msg import Int64, String
 from std_srvs.srv import Trigger
 
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 
 class Counter(Node):
@@ -90,7 +90,7 @@ class TestMinimal:
         talker, listener = Counter(), Listener(5)
         executor.add_node(talker)
         executor.add_node(listener)
-        executor.spin_until_future_complete(listener.finished, timeout_sec=SECONDS)
+        executor.spin_until_future_complete(listener.finished, timeout_sec=TIMEOUT_S)
         assert listener.heard == [f"Hello {number}" for number in range(5)]
         executor.shutdown()
         talker.destroy_node()
@@ -104,7 +104,7 @@ class TestMinimal:
         assert subscription.topic_name == "/topic"
         while rclpy.ok() and len(texts) < 3:
             publisher.publish(String(data="hi"))
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert texts == ["hi"] * 3
         node.destroy_node()
 
@@ -137,7 +137,7 @@ class TestMinimal:
             def __init__(self):
                 super().__init__("minimal_client")
                 self.cli = self.create_client(AddTwoInts, "add_two_ints")
-                while not self.cli.wait_for_service(timeout_sec=SECONDS):
+                while not self.cli.wait_for_service(timeout_sec=TIMEOUT_S):
                     self.get_logger().info("service not available, waiting again...")
                 self.req = AddTwoInts.Request()
 
@@ -157,7 +157,7 @@ class TestMinimal:
         rclpy.spin_until_future_complete(client, client.future)
         assert client.future.result().sum == 42
         rclpy.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
     def test_synchronous_call_works_beside_spinning_thread(self, node):
@@ -167,9 +167,9 @@ class TestMinimal:
         executor.add_node(node)
         thread = threading.Thread(target=executor.spin, daemon=True)
         thread.start()
-        assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=SECONDS).sum == 3
+        assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=TIMEOUT_S).sum == 3
         executor.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
 
     def test_synchronous_call_works_in_callback_of_reentrant_group(self, node):
         responses = []
@@ -183,7 +183,7 @@ class TestMinimal:
         timer = node.create_timer(0.01, ask, callback_group=MutuallyExclusiveCallbackGroup())
         executor = MultiThreadedExecutor(3)
         executor.add_node(node)
-        end = time.monotonic() + SECONDS
+        end = time.monotonic() + TIMEOUT_S
         while not responses and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.1)
         executor.shutdown()
@@ -194,7 +194,7 @@ class TestMinimal:
         client = node.create_client(AddTwoInts, "add")
         node.create_timer(0.01, lambda: client.call(AddTwoInts.Request()))
         with pytest.raises(RuntimeError, match="call_async"):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
 
     def test_coroutine_awaits_service_call(self, node):
         responses = []
@@ -207,7 +207,7 @@ class TestMinimal:
             responses.append(response.sum)
 
         timer = node.create_timer(0.01, ask, callback_group=ReentrantCallbackGroup())
-        end = time.monotonic() + SECONDS
+        end = time.monotonic() + TIMEOUT_S
         while not responses and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
         assert responses == [7]
@@ -219,7 +219,7 @@ class TestMinimal:
 
         node.create_service(AddTwoInts, "multiply", multiply)
         future = node.create_client(AddTwoInts, "multiply").call_async(AddTwoInts.Request(a=6, b=7))
-        rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=TIMEOUT_S)
         assert future.result().sum == 42
 
     def test_done_callbacks_run_in_executor(self, node):
@@ -227,7 +227,7 @@ class TestMinimal:
         node.create_service(AddTwoInts, "add", _sum)
         future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
         future.add_done_callback(lambda future: events.append(future.result().sum))
-        end = time.monotonic() + SECONDS
+        end = time.monotonic() + TIMEOUT_S
         while not events and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
         assert events == [2]
@@ -237,14 +237,14 @@ class TestMinimal:
         with MultiThreadedExecutor(num_threads=4) as executor:
             executor.add_node(talker)
             executor.add_node(listener)
-            executor.spin_until_future_complete(listener.finished, timeout_sec=SECONDS)
+            executor.spin_until_future_complete(listener.finished, timeout_sec=TIMEOUT_S)
         assert len(listener.heard) >= 3
 
     def test_guard_condition_calls_callback(self, node):
         called = []
         guard_condition = node.create_guard_condition(lambda: called.append(1))
         guard_condition.trigger()
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert called == [1]
         assert node.destroy_guard_condition(guard_condition)
 
@@ -257,7 +257,7 @@ class TestMinimal:
             rate.sleep()
         assert time.monotonic() - start >= 0.08
         rclpy.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
 
@@ -345,7 +345,7 @@ class TestNode:
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         while not texts:
-            executor.spin_once(timeout_sec=SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
         node.destroy_timer(timer)
         assert node.count_subscribers("topic") == 1
         assert node.get_parameter("speed").value == 1.0
@@ -414,7 +414,7 @@ class TestNode:
         deliveries = []
         node.create_subscription(String, "chatter", lambda msg, info: deliveries.append((msg.data, info)), 1)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert deliveries[0][0] == "x"
         assert deliveries[0][1].source_timestamp > 0
 
@@ -422,7 +422,7 @@ class TestNode:
         payloads = []
         node.create_subscription(String, "chatter", payloads.append, 1, raw=True)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert payloads == [b"\x00\x01\x00\x00\x02\x00\x00\x00x\x00"]
 
     def test_late_subscription_receives_latched_message(self, node):
@@ -430,7 +430,7 @@ class TestNode:
         profile = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
         node.create_publisher(String, "latched", profile).publish(String(data="kept"))
         node.create_subscription(String, "latched", lambda msg: texts.append(msg.data), profile)
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert texts == ["kept"]
 
     def test_nodes_and_publishers_are_context_managers(self, ros):
@@ -445,7 +445,7 @@ class TestNode:
         messages = []
         node.create_subscription(Log, "/rosout", messages.append, 10)
         node.get_logger().warning("careful")
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert (messages[0].name, messages[0].msg, messages[0].level) == ("ns.tested", "careful", logging.WARNING)
         assert messages[0].file == __file__
 

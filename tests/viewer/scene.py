@@ -20,7 +20,7 @@ from linkwright.packages import PackageFinder
 from linkwright.rviz import RvizConfig
 from linkwright.viewer import Viewer
 from tests.skipping import graph_clock
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 ARM = """\
 <robot name="arm">
@@ -134,7 +134,7 @@ class Client:
     socket: aiohttp.ClientWebSocketResponse
     messages: list[dict | Transforms | bytes] = field(default_factory=list)
 
-    async def receive(self, timeout: float = SECONDS) -> dict | Transforms | bytes:
+    async def receive(self, timeout: float = TIMEOUT_S) -> dict | Transforms | bytes:
         message = await self.socket.receive(timeout=timeout)
         if message.type is aiohttp.WSMsgType.BINARY:
             decoded: dict | Transforms | bytes = unpack(message.data) if message.data[0] == 1 else message.data

@@ -22,7 +22,7 @@ from typing import Any
 import aiohttp
 
 from tests.places import PACKAGE
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 ROBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
 
@@ -116,4 +116,4 @@ async def _main() -> None:
 
 
 if __name__ == "__main__":
-    asyncio.run(asyncio.wait_for(_main(), SECONDS))
+    asyncio.run(asyncio.wait_for(_main(), TIMEOUT_S))

@@ -12,7 +12,7 @@ from linkwright.vision.evaluation import GroundTruth, best_f1_threshold, evaluat
 
 NAMES = ("ball", "box")
 BOX = (10.0, 10.0, 30.0, 30.0)
-ELSEWHERE = (50.0, 50.0, 80.0, 80.0)
+OTHER_BOX = (50.0, 50.0, 80.0, 80.0)
 
 
 def objects(*rows, ignored=()):
@@ -36,14 +36,14 @@ def test_intersection_over_union_of_boxes():
 
 def test_perfect_detections_have_map_1():
     figures = evaluate(
-        NAMES, [objects((0, *BOX), (1, *ELSEWHERE))], [detections_of((0, 0.9, *BOX), (1, 0.8, *ELSEWHERE))]
+        NAMES, [objects((0, *BOX), (1, *OTHER_BOX))], [detections_of((0, 0.9, *BOX), (1, 0.8, *OTHER_BOX))]
     )
     assert (figures.map50, figures.map) == (pytest.approx(1), pytest.approx(1))
     assert figures.confusion.tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 0]]
 
 
 def test_half_of_objects_found_limits_average_precision():
-    figures = evaluate(NAMES, [objects((0, *BOX), (0, *ELSEWHERE))], [detections_of((0, 0.9, *BOX))])
+    figures = evaluate(NAMES, [objects((0, *BOX), (0, *OTHER_BOX))], [detections_of((0, 0.9, *BOX))])
     assert figures.classes[0].ap50 == pytest.approx(51 / 101)
     assert figures.classes[1].ap50 is None
     assert figures.map50 == pytest.approx(51 / 101)
@@ -52,8 +52,8 @@ def test_half_of_objects_found_limits_average_precision():
 
 def test_false_positive_costs_only_above_score_of_true_positive():
     truth = [objects((0, *BOX))]
-    assert evaluate(NAMES, truth, [detections_of((0, 0.9, *BOX), (0, 0.8, *ELSEWHERE))]).map50 == pytest.approx(1)
-    assert evaluate(NAMES, truth, [detections_of((0, 0.8, *BOX), (0, 0.9, *ELSEWHERE))]).map50 == pytest.approx(0.5)
+    assert evaluate(NAMES, truth, [detections_of((0, 0.9, *BOX), (0, 0.8, *OTHER_BOX))]).map50 == pytest.approx(1)
+    assert evaluate(NAMES, truth, [detections_of((0, 0.8, *BOX), (0, 0.9, *OTHER_BOX))]).map50 == pytest.approx(0.5)
 
 
 def test_duplicate_detection_is_a_false_positive():
@@ -70,21 +70,21 @@ def test_inexact_box_counts_up_to_its_overlap():
 
 
 def test_detection_of_ignored_object_is_not_counted():
-    truth = [objects((0, *BOX), (0, *ELSEWHERE), ignored={1})]
-    figures = evaluate(NAMES, truth, [detections_of((0, 0.9, *ELSEWHERE), (0, 0.8, *BOX))])
+    truth = [objects((0, *BOX), (0, *OTHER_BOX), ignored={1})]
+    figures = evaluate(NAMES, truth, [detections_of((0, 0.9, *OTHER_BOX), (0, 0.8, *BOX))])
     assert figures.map50 == pytest.approx(1)
     assert figures.classes[0].objects == 1
     assert figures.confusion.tolist() == [[1, 0, 0], [0, 0, 0], [0, 0, 0]]
 
 
 def test_classes_are_matched_by_name():
-    other_order = detections_of((1, 0.9, *BOX), (0, 0.9, *ELSEWHERE), (2, 0.9, *BOX), names=("box", "ball", "cat"))
-    assert evaluate(NAMES, [objects((0, *BOX), (1, *ELSEWHERE))], [other_order]).map50 == pytest.approx(1)
+    other_order = detections_of((1, 0.9, *BOX), (0, 0.9, *OTHER_BOX), (2, 0.9, *BOX), names=("box", "ball", "cat"))
+    assert evaluate(NAMES, [objects((0, *BOX), (1, *OTHER_BOX))], [other_order]).map50 == pytest.approx(1)
 
 
 def test_confusion_matrix_counts_mistaken_and_missed_classes():
-    truth = [objects((0, *BOX), (1, *ELSEWHERE))]
-    figures = evaluate(NAMES, truth, [detections_of((1, 0.9, *BOX), (0, 0.3, *ELSEWHERE), (1, 0.6, 0, 60, 9, 69))])
+    truth = [objects((0, *BOX), (1, *OTHER_BOX))]
+    figures = evaluate(NAMES, truth, [detections_of((1, 0.9, *BOX), (0, 0.3, *OTHER_BOX), (1, 0.6, 0, 60, 9, 69))])
     assert figures.confusion.tolist() == [[0, 1, 0], [0, 0, 1], [0, 1, 0]]
     assert figures.classes[1].precision == 0
 
@@ -101,8 +101,8 @@ def test_recall_is_reported_by_size():
 
 
 def test_best_f1_threshold_is_score_of_last_useful_detection():
-    truth = [objects((0, *BOX), (1, *ELSEWHERE), (1, 200, 200, 240, 240), ignored={2})]
-    rows = [(0, 0.9, *BOX), (1, 0.6, *ELSEWHERE), (0, 0.4, 90, 90, 99, 99), (1, 0.7, 200, 200, 240, 240)]
+    truth = [objects((0, *BOX), (1, *OTHER_BOX), (1, 200, 200, 240, 240), ignored={2})]
+    rows = [(0, 0.9, *BOX), (1, 0.6, *OTHER_BOX), (0, 0.4, 90, 90, 99, 99), (1, 0.7, 200, 200, 240, 240)]
     assert best_f1_threshold(NAMES, truth, [detections_of(*rows)]) == pytest.approx(0.6)
     assert best_f1_threshold(NAMES, truth, [detections_of(*rows[2:])]) == 0.5
     assert best_f1_threshold(NAMES, truth, [detections_of()]) == 0.5

@@ -17,7 +17,7 @@ from linkwright.wire.background import BackgroundTransport
 from linkwright.wire.unsupported_settings import DISCOVERY_SERVERS, SECURITY
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
 from tests.domains import own_domain
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 from tests.wire.programs import Program
 
 ROS_VARIABLES = (
@@ -97,10 +97,10 @@ class Process:
     def join(self) -> BackgroundTransport:
         self.transport = self._join(self.graph)
         assert self.transport is not None
-        assert self.transport.wait_until_ready(SECONDS)
+        assert self.transport.wait_until_ready(TIMEOUT_S)
         return self.transport
 
-    def spin_until(self, condition: Callable[[], object], seconds: float = SECONDS) -> None:
+    def spin_until(self, condition: Callable[[], object], seconds: float = TIMEOUT_S) -> None:
         """Run callbacks until a condition is met, and fail after the time limit."""
         deadline = time.monotonic() + seconds
         while not condition():

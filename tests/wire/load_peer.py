@@ -21,12 +21,12 @@ from std_srvs.srv import SetBool
 from test_msgs.action import Fibonacci
 from test_msgs.srv import BasicTypes
 
-from tests.wire.node_program import SECONDS, result_of, serve_node
+from tests.wire.node_program import TIMEOUT_S, result_of, serve_node
 
 MAX_PENDING_CALLS = 3
 """The number of simultaneous calls of one process; three such processes stay within the 10 requests that a
 service's queue holds."""
-ENDLESS = 1_000_000
+ENDLESS_ORDER = 1_000_000
 """The order of a goal that does not end on its own."""
 
 
@@ -65,17 +65,17 @@ class LoadPeer(Node):
         clients = [
             self.create_client(service_type, f"/{server}/{name}") for name, service_type in service_types.items()
         ]
-        assert all(client.wait_for_service(SECONDS) for client in clients)
+        assert all(client.wait_for_service(TIMEOUT_S) for client in clients)
         slots = threading.Semaphore(MAX_PENDING_CALLS)
         futures = []
         for number in range(count):
-            if not slots.acquire(timeout=SECONDS):
+            if not slots.acquire(timeout=TIMEOUT_S):
                 break
             future = clients[number % 4].call_async(request(number, tag))
             future.add_done_callback(lambda _: slots.release())
             futures.append(future)
         for _ in range(MAX_PENDING_CALLS):
-            slots.acquire(timeout=SECONDS)  # wait for the last calls
+            slots.acquire(timeout=TIMEOUT_S)  # wait for the last calls
         return sum(future.done() and is_correct(number, tag, future.result()) for number, future in enumerate(futures))
 
     def run_goals(self, server: str, count: int) -> list[str]:
@@ -84,20 +84,20 @@ class LoadPeer(Node):
         Every third goal is cancelled; each of the others is aborted by the next goal.
         """
         client = ActionClient(self, Fibonacci, f"/{server}/single")
-        assert client.wait_for_server(SECONDS)
+        assert client.wait_for_server(TIMEOUT_S)
         results = []
         for number in range(count):
             feedback_event = threading.Event()
-            order = ENDLESS if number < count - 1 else 5
+            order = ENDLESS_ORDER if number < count - 1 else 5
             sent = client.send_goal_async(
                 Fibonacci.Goal(order=order), feedback_callback=lambda _, on=feedback_event: on.set()
             )
             goal = result_of(sent)
             assert goal.accepted
             results.append(goal.get_result_async())
-            if order == ENDLESS:
-                assert feedback_event.wait(SECONDS)
-            if number % 3 == 2 and order == ENDLESS:
+            if order == ENDLESS_ORDER:
+                assert feedback_event.wait(TIMEOUT_S)
+            if number % 3 == 2 and order == ENDLESS_ORDER:
                 assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
         names = {getattr(GoalStatus, f"STATUS_{name}"): name for name in ("SUCCEEDED", "ABORTED", "CANCELED")}
         ends = [names[result_of(result).status] for result in results]
@@ -119,7 +119,9 @@ class LoadPeer(Node):
                 goal.abort()
                 return Fibonacci.Result(sequence=sequence)
             sequence = (
-                [*sequence, 1][-20:] if goal.request.order == ENDLESS else [*sequence, sequence[-1] + sequence[-2]]
+                [*sequence, 1][-20:]
+                if goal.request.order == ENDLESS_ORDER
+                else [*sequence, sequence[-1] + sequence[-2]]
             )
             goal.publish_feedback(Fibonacci.Feedback(sequence=sequence))
             time.sleep(0.02)

@@ -13,7 +13,7 @@ from rclpy.node import Node
 
 from tests.wire.programs import serve
 
-SECONDS = 60.0
+TIMEOUT_S = 60.0
 """The time limit for another program's answer."""
 
 
@@ -34,7 +34,7 @@ def serve_node(make: Callable[[str], Node], questions: str, *, threads: int = 1)
     rclpy.shutdown()
 
 
-def result_of(future: Any, seconds: float = SECONDS) -> Any:
+def result_of(future: Any, seconds: float = TIMEOUT_S) -> Any:
     """Return the result that another thread delivers.
 
     Raises:

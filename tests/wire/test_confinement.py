@@ -12,7 +12,7 @@ import pytest
 from linkwright.graph import Graph
 from linkwright.wire.dds import join, open_domains
 from linkwright.wire.dds.settings import own_addresses
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux sends packets with a time to live of zero"
@@ -33,7 +33,7 @@ def join_network() -> Graph:
     graph = Graph(threads=True)
     transport = join(graph)
     assert transport is not None
-    assert transport.wait_until_ready(SECONDS)
+    assert transport.wait_until_ready(TIMEOUT_S)
     return graph
 
 

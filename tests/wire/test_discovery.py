@@ -12,7 +12,7 @@ from linkwright.messages import String
 from linkwright.wire.dds import discovery, engine, join
 from linkwright.wire.dds.discovery_info import ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 
 def names(process):
@@ -62,7 +62,7 @@ def test_wait_for_discovery_ends_when_all_nodes_are_discovered(processes, progra
     programs("our_program", "one")
     programs("our_program", "two")
     process = processes("ours")
-    assert process.transport.wait_for_discovery(SECONDS)
+    assert process.transport.wait_for_discovery(TIMEOUT_S)
     assert {node.name for node in process.transport.remote_nodes()} == {"one", "two"}
 
 
@@ -71,7 +71,7 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
 
     class Late(engine.Engine):
         def __init__(self, *arguments: Any) -> None:
-            assert may_join.wait(SECONDS)
+            assert may_join.wait(TIMEOUT_S)
             super().__init__(*arguments)
 
     announced = []
@@ -89,14 +89,14 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
     publishers = [process.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
     transport = join(process.graph)  # this requests all publishers before the transport joins
     may_join.set()
-    assert transport.wait_until_ready(SECONDS)
+    assert transport.wait_until_ready(TIMEOUT_S)
     wait_until(lambda: announced)
     assert {publisher.gid for publisher in publishers} <= set(announced[0].nodes[0].writers)
 
 
 def test_wait_for_discovery_ends_soon_without_peers(processes):
     process = processes("ours")
-    assert process.transport.wait_for_discovery(SECONDS)
+    assert process.transport.wait_for_discovery(TIMEOUT_S)
 
 
 def test_killed_process_and_its_successor_are_listed_once(processes, programs):

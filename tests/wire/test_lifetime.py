@@ -15,14 +15,14 @@ import pytest
 
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String, get_message
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 
 
-def run(text: str, seconds: float = SECONDS) -> subprocess.CompletedProcess[str]:
+def run(text: str, seconds: float = TIMEOUT_S) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", textwrap.dedent(text)], capture_output=True, text=True, timeout=seconds, check=False
     )
@@ -71,7 +71,7 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
 
     class Late(engine.Engine):
         def __init__(self, *arguments: Any) -> None:
-            assert may_join.wait(SECONDS)
+            assert may_join.wait(TIMEOUT_S)
             super().__init__(*arguments)
             engines.append(self)
 
@@ -82,10 +82,10 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
     joining.close()
     assert not engines
     may_join.set()
-    joining._join_thread.join(SECONDS)
+    joining._join_thread.join(TIMEOUT_S)
     assert [engine._participant.closed for engine in engines] == [True]
     assert open_domains._opened == {}
-    assert not joining.wait_until_ready(SECONDS)
+    assert not joining.wait_until_ready(TIMEOUT_S)
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.1, 0.15, 0.2])
@@ -119,7 +119,7 @@ def test_close_ends_wait_for_discovery(processes):
     waiting = threading.Thread(target=wait, daemon=True)
     waiting.start()
     process.close()
-    assert ended.wait(SECONDS)
+    assert ended.wait(TIMEOUT_S)
 
 
 def test_reliable_messages_sent_before_close_arrive(processes):
@@ -206,4 +206,4 @@ def test_killed_peer_does_not_block_publisher(processes, programs):
     for _ in range(2000):
         publisher.publish(String(data="x" * 1000))
     process.close()
-    assert time.monotonic() - begin < SECONDS, "messages must not wait one by one"
+    assert time.monotonic() - begin < TIMEOUT_S, "messages must not wait one by one"

@@ -14,7 +14,7 @@ from linkwright.wire.dds.rtps.messages import parse
 Image = get_message("sensor_msgs/msg/Image")
 ADDRESS = ("127.0.0.1", 7411)
 WRITER, READER = bytes(range(16)), bytes(range(100, 116))
-PACKET = 60_832
+PACKET_BYTES = 60_832
 """The bytes that Linux charges to the buffer for a packet with a full fragment."""
 
 SMALL, LARGE = bytes(100), os.urandom(150_000)
@@ -41,7 +41,7 @@ class Buffer:
 
 
 def test_three_packets_fit_in_empty_buffer_before_next_check():
-    buffer = Buffer(0, 3 * PACKET, 2 * PACKET, PACKET, 0)
+    buffer = Buffer(0, 3 * PACKET_BYTES, 2 * PACKET_BYTES, PACKET_BYTES, 0)
     assert [buffer.receiver.wait_for_room() for _ in range(3)] == [True] * 3
     assert not buffer.pauses
     assert buffer.receiver.wait_for_room()
@@ -49,7 +49,7 @@ def test_three_packets_fit_in_empty_buffer_before_next_check():
 
 
 def test_blocked_reader_is_waited_for_once():
-    buffer = Buffer(3 * PACKET)
+    buffer = Buffer(3 * PACKET_BYTES)
     assert not buffer.receiver.wait_for_room()
     pauses = buffer.pauses
     buffer.receiver.begin()

@@ -15,7 +15,7 @@ from tests.waiting import wait_until
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-GOALS = 100
+GOAL_COUNT = 100
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 """The side of the client, and the side of the server."""
 
@@ -59,7 +59,7 @@ def test_goals_are_rejected_aborted_and_canceled(peers, client_side, server_side
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
 def test_simultaneous_goals_get_their_own_results(peers, client_side, server_side):
     peers(server_side)
-    assert peers(client_side).ask("count_correct_goals", f"/{server_side}/fibonacci", GOALS) == GOALS
+    assert peers(client_side).ask("count_correct_goals", f"/{server_side}/fibonacci", GOAL_COUNT) == GOAL_COUNT
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)

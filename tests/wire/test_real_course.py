@@ -18,7 +18,7 @@ from linkwright.packages.programs.source_programs import source_programs
 from tests.learning.finished import finish
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-SECONDS = 90.0
+TIMEOUT_S = 90.0
 RED_BALL = (-1.5, 1.8)
 
 Float64, Twist = get_message("std_msgs/msg/Float64"), get_message("geometry_msgs/msg/Twist")
@@ -92,15 +92,15 @@ def interrupt(process: subprocess.Popen[str]) -> str:
     """
     time.sleep(0.3)  # the subscriber has taken all messages
     process.send_signal(signal.SIGINT)
-    return process.communicate(timeout=SECONDS)[1]
+    return process.communicate(timeout=TIMEOUT_S)[1]
 
 
 def test_first_move_follows_parameters_and_stops_on_ctrl_c(velocities, run):
     process, commands = velocities
     program = run("my_control", "first_move", "speed:=0.4", "duration:=60.0")
-    process.spin_until(lambda: (0.4, 0.5) in commands, SECONDS)
+    process.spin_until(lambda: (0.4, 0.5) in commands, TIMEOUT_S)
     assert "Traceback" not in interrupt(program)
-    process.spin_until(lambda: commands[-1] == (0.0, 0.0), SECONDS)
+    process.spin_until(lambda: commands[-1] == (0.0, 0.0), TIMEOUT_S)
 
 
 def test_odometer_accumulates_distance_and_resets(processes, run):
@@ -112,16 +112,16 @@ def test_odometer_accumulates_distance_and_resets(processes, run):
     client = process.node.create_client(trigger, "/reset_distance")
     run("my_control", "odometer")
     process.spin_until(
-        lambda: publisher.get_subscription_count() and process.node.count_publishers("/distance"), SECONDS
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/distance"), TIMEOUT_S
     )
     for x in (0.0, 1.0, 0.0):
         message = Odometry()
         message.pose.pose.position.x = x
         publisher.publish(message)
-    process.spin_until(lambda: distances and distances[-1] == 2.0, SECONDS)
-    process.spin_until(client.service_is_ready, SECONDS)
+    process.spin_until(lambda: distances and distances[-1] == 2.0, TIMEOUT_S)
+    process.spin_until(client.service_is_ready, TIMEOUT_S)
     response = client.call_async(trigger.Request())
-    process.spin_until(response.done, SECONDS)
+    process.spin_until(response.done, TIMEOUT_S)
     assert response.result().success
 
 
@@ -152,16 +152,16 @@ def test_course_nodes_drive_by_measurements(velocities, run, executable, topic, 
     publisher = process.node.create_publisher(type(drives), topic, 10)
     program = run("my_control", executable)
     process.spin_until(
-        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), SECONDS
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), TIMEOUT_S
     )
 
     def tell(message, condition):
         publisher.publish(message)
         return commands and condition(commands[-1][0])
 
-    process.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), SECONDS)
+    process.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), TIMEOUT_S)
     if does_not_drive is not None:
-        process.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), SECONDS)
+        process.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), TIMEOUT_S)
     assert "Traceback" not in interrupt(program)
 
 
@@ -170,10 +170,10 @@ def test_word_driver_ends_on_ctrl_c(velocities, run):
     publisher = process.node.create_publisher(String, "/voice/text", 10)
     program = run("my_voice", "word_driver")
     process.spin_until(
-        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), SECONDS
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), TIMEOUT_S
     )
     assert "Traceback" not in interrupt(program)
-    process.spin_until(lambda: commands and commands[-1] == (0.0, 0.0), SECONDS)
+    process.spin_until(lambda: commands and commands[-1] == (0.0, 0.0), TIMEOUT_S)
 
 
 @pytest.mark.extra("sim")
@@ -208,8 +208,8 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
                 ("my_mission", "go_to_ball", lambda: states and process.node.count_subscribers("/ball")),
             ):
                 programs.append(run(package, name, "use_sim_time:=true"))
-                process.spin_until(is_present, SECONDS)
-            process.spin_until(lambda: places and process.node.count_publishers("/camera/image_raw"), SECONDS)
+                process.spin_until(is_present, TIMEOUT_S)
+            process.spin_until(lambda: places and process.node.count_publishers("/camera/image_raw"), TIMEOUT_S)
 
             command_time = -inf
 
@@ -221,11 +221,11 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
                     command_time = time.monotonic()
                 return "driving" in states
 
-            process.spin_until(is_driving, SECONDS)
-            process.spin_until(lambda: states[-1] == "arrived", SECONDS)
+            process.spin_until(is_driving, TIMEOUT_S)
+            process.spin_until(lambda: states[-1] == "arrived", TIMEOUT_S)
             x, y = places[-1]
             assert 0.4 < ((x - RED_BALL[0]) ** 2 + (y - RED_BALL[1]) ** 2) ** 0.5 < 1.0
             assert not any("Traceback" in interrupt(program) for program in programs)
         finally:
             world.send_signal(signal.SIGINT)
-            world.wait(SECONDS)
+            world.wait(TIMEOUT_S)

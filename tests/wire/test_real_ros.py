@@ -19,10 +19,10 @@ from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-IMAGES = 45
-FLOOD = 300
-FRAMES = 40
-NODES = 50
+IMAGE_COUNT = 45
+FLOOD_COUNT = 300
+FRAME_COUNT = 40
+NODE_COUNT = 50
 
 Image = get_message("sensor_msgs/msg/Image")
 JointState = get_message("sensor_msgs/msg/JointState")
@@ -138,18 +138,18 @@ def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     process.spin_until(lambda: process.node.count_publishers("/images_from_ros") == 1)
     time.sleep(0.5)
-    real.ask("publish_images", IMAGES, 30.0)
+    real.ask("publish_images", IMAGE_COUNT, 30.0)
     picture = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
     due = time.monotonic()
-    for number in range(IMAGES):
+    for number in range(IMAGE_COUNT):
         picture.header.frame_id = str(number)
         publisher.publish(picture)
         due += 1 / 30
         while time.monotonic() < due:
             process.executor.spin_once(timeout_sec=max(0.0, due - time.monotonic()))
-    process.spin_until(lambda: len(numbers) == IMAGES)
-    assert numbers == list(range(IMAGES))
-    assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
+    process.spin_until(lambda: len(numbers) == IMAGE_COUNT)
+    assert numbers == list(range(IMAGE_COUNT))
+    assert real.ask_until(lambda images: len(images) == IMAGE_COUNT, "received_images") == list(range(IMAGE_COUNT))
 
 
 def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
@@ -159,11 +159,11 @@ def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
     publisher = process.node.create_publisher(Image, "/images_to_ros", 1)
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
-    for number in range(FLOOD):
+    for number in range(FLOOD_COUNT):
         image.header.frame_id = str(number)
         publisher.publish(image)
         process.executor.spin_once(timeout_sec=0.01)
-    assert real.ask_until(lambda images: images and images[-1] == FLOOD - 1, "received_images")
+    assert real.ask_until(lambda images: images and images[-1] == FLOOD_COUNT - 1, "received_images")
 
 
 def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_node):
@@ -177,7 +177,7 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
     arrived: list[int] = []
-    for number in range(FRAMES):
+    for number in range(FRAME_COUNT):
         image.header.frame_id = str(number)
         publisher.publish(image)
         deadline = time.monotonic() + 1.0
@@ -185,7 +185,7 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
             process.executor.spin_once(timeout_sec=0.01)
             arrived = real.ask("received_images", "frames_to_ros")
     # The reader is discovered before the second half is sent.
-    assert len([number for number in arrived if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2
+    assert len([number for number in arrived if number >= FRAME_COUNT // 2]) >= 0.9 * FRAME_COUNT / 2
 
 
 def test_late_subscriber_gets_latched_message(processes, real_node):
@@ -270,11 +270,11 @@ def test_killed_linkwright_node_disappears_and_successor_is_received(processes, 
 def test_fifty_real_nodes_appear_and_disappear_with_their_process(processes, real_node):
     process = processes("ours")
     real = real_node()
-    real.ask("make_nodes", NODES)
-    names = {f"extra_{number}" for number in range(NODES)}
+    real.ask("make_nodes", NODE_COUNT)
+    names = {f"extra_{number}" for number in range(NODE_COUNT)}
     process.spin_until(lambda: names <= {node.name for node in process.transport.remote_nodes()})
-    process.spin_until(lambda: process.node.count_publishers("/rosout") == NODES + 2)
-    assert len(linkwright("node", "list")[0].splitlines()) == NODES + 2
+    process.spin_until(lambda: process.node.count_publishers("/rosout") == NODE_COUNT + 2)
+    assert len(linkwright("node", "list")[0].splitlines()) == NODE_COUNT + 2
     real.end()
     process.spin_until(lambda: not process.transport.remote_nodes())
 

@@ -13,8 +13,8 @@ from linkwright.messages import get_service
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-CALLS = 1000
-LARGE = 1_000_000
+CALL_COUNT = 1000
+LARGE_TEXT_LENGTH = 1_000_000
 SetBool = get_service("std_srvs/srv/SetBool")
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
 
@@ -62,7 +62,7 @@ def test_thousand_calls_to_real_service_get_their_own_responses(processes, real_
     process = process or processes("ours")
     client = process.node.create_client(SetCameraInfo, "/echo")
     process.spin_until(client.service_is_ready)
-    for number in range(CALLS):
+    for number in range(CALL_COUNT):
         assert (
             wait_for_result(process, client.call_async(camera_request(f"call {number}"))).status_message
             == f"call {number}"
@@ -73,7 +73,7 @@ def test_thousand_calls_from_real_client_get_their_own_responses(processes, real
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/our_echo", echo)
     peer = real_node()
-    assert ask_while_spinning(process, peer, "echoes_are_right", "/our_echo", "call", CALLS) == CALLS
+    assert ask_while_spinning(process, peer, "echoes_are_right", "/our_echo", "call", CALL_COUNT) == CALL_COUNT
 
 
 def test_first_call_of_first_real_node_is_answered(processes, real_node):
@@ -95,7 +95,7 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
     threads = [
         threading.Thread(
             target=lambda peer=peer, number=number: counts.append(
-                peer.ask("echoes_are_right", "/our_echo", f"client {number}", CALLS // 5)
+                peer.ask("echoes_are_right", "/our_echo", f"client {number}", CALL_COUNT // 5)
             )
         )
         for number, peer in enumerate(peers)
@@ -110,7 +110,7 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
     process.spin_until(lambda: len(counts) == 3, 120)
     for thread in threads:
         thread.join()
-    assert counts == [CALLS // 5] * 3
+    assert counts == [CALL_COUNT // 5] * 3
     assert own_futures == [f"mine {number}" for number in range(20)]
 
 
@@ -143,7 +143,7 @@ def test_calls_larger_than_packet_work_in_both_directions(processes, real_node):
     client = process.node.create_client(SetCameraInfo, "/echo")
     peer = real_node()
     process.spin_until(client.service_is_ready)
-    large = "".join(chr(ord("a") + number % 26) for number in range(LARGE))
+    large = "".join(chr(ord("a") + number % 26) for number in range(LARGE_TEXT_LENGTH))
     assert wait_for_result(process, client.call_async(camera_request(large))).status_message == large
     assert ask_while_spinning(process, peer, "echoes", "/our_echo", [large, "small"]) == [large, "small"]
 

@@ -21,7 +21,7 @@ from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 TYPES = os.environ.get("LINKWRIGHT_ROS_TYPES", "")
-SEEDS = 6
+SEED_COUNT = 6
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 
 pytestmark = pytest.mark.skipif(
@@ -98,15 +98,15 @@ def test_messages_and_services_of_custom_package(programs, tmp_path, publisher_s
     peers_by_side = {side: start(side) for side in ("theirs", "ours")}
     types = ["wire_msgs/msg/Part", "wire_msgs/msg/Whole"]
     peers_by_side[subscriber_side].ask("subscribe", types)
-    peers_by_side[publisher_side].ask("publish", types, SEEDS)
-    peers_by_side[subscriber_side].ask_until(lambda counts: set(counts.values()) == {SEEDS}, "counts")
+    peers_by_side[publisher_side].ask("publish", types, SEED_COUNT)
+    peers_by_side[subscriber_side].ask_until(lambda counts: set(counts.values()) == {SEED_COUNT}, "counts")
     for name in types:
         assert peers_by_side[subscriber_side].ask("received", name) == peers_by_side[publisher_side].ask(
-            "expected", name, SEEDS
+            "expected", name, SEED_COUNT
         )
     peers_by_side[subscriber_side].ask("serve", ["wire_msgs/srv/Judge"])
-    requests, responses = peers_by_side[subscriber_side].ask("expected_calls", "wire_msgs/srv/Judge", SEEDS)
-    assert peers_by_side[publisher_side].ask("call", "wire_msgs/srv/Judge", SEEDS) == responses
+    requests, responses = peers_by_side[subscriber_side].ask("expected_calls", "wire_msgs/srv/Judge", SEED_COUNT)
+    assert peers_by_side[publisher_side].ask("call", "wire_msgs/srv/Judge", SEED_COUNT) == responses
     assert peers_by_side[subscriber_side].ask("requests", "wire_msgs/srv/Judge") == requests
     if publisher_side == "ours":
         (message,) = set(peers_by_side["theirs"].ask("hashes", "wire_msgs/msg/Whole"))

@@ -11,7 +11,7 @@ import pytest
 from tests.wire.programs import Program
 from tests.wire.zenoh.hosts import CLOUD, DESK, DESKS_CLOUD_ADDRESS, Hosts, unsupported_reason
 
-FORGOTTEN_AFTER = 2
+PRUNE_DELAY_S = 2
 """The seconds after which Cyclone stops asking an address that does not answer; 30 by default."""
 
 
@@ -20,7 +20,7 @@ def configuration(interface: str) -> str:
     return (
         "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast>"
         f"<Interfaces><NetworkInterface name='{interface}'/></Interfaces></General>"
-        f"<Discovery><InitialLocatorPruneDelay>{FORGOTTEN_AFTER} s</InitialLocatorPruneDelay></Discovery>"
+        f"<Discovery><InitialLocatorPruneDelay>{PRUNE_DELAY_S} s</InitialLocatorPruneDelay></Discovery>"
         "</Domain></CycloneDDS>"
     )
 
@@ -49,7 +49,7 @@ def test_late_and_returning_static_peer_is_discovered(hosts):
     desk = start(DESK, CLOUD, "desk", ROS_STATIC_PEERS=DESKS_CLOUD_ADDRESS)
     try:
         for name in ("first", "second"):
-            time.sleep(2 * FORGOTTEN_AFTER)
+            time.sleep(2 * PRUNE_DELAY_S)
             late_peer = start(CLOUD, DESK, name)
             desk.ask_until(lambda nodes, name=name: name in nodes, "nodes")
             late_peer.end()

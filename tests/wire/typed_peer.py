@@ -14,7 +14,7 @@ from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from tests.wire.node_program import SECONDS, result_of, serve_node
+from tests.wire.node_program import TIMEOUT_S, result_of, serve_node
 from tests.wire.values import bytes_of_size, digest, interface, message_from_seed, plain
 
 LATCHED = QoSProfile(depth=20, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -93,7 +93,7 @@ class TypedPeer(Node):
         """Call a service once for each seed, one call after another, and return the responses."""
         service_type = interface(name)
         client = self.create_client(service_type, _topic(name))
-        assert client.wait_for_service(SECONDS)
+        assert client.wait_for_service(TIMEOUT_S)
         responses = [
             plain(result_of(client.call_async(message_from_seed(service_type.Request, seed)))) for seed in range(seeds)
         ]
@@ -106,7 +106,7 @@ class TypedPeer(Node):
 
         def execute(goal: Any) -> Any:
             self._requests.setdefault(name, []).append(plain(goal.request))
-            deadline = time.monotonic() + SECONDS / 2
+            deadline = time.monotonic() + TIMEOUT_S / 2
             while not self.count_subscribers(f"{_topic(name)}/_action/feedback") and time.monotonic() < deadline:
                 time.sleep(0.01)  # feedback published before the client's subscription is known is lost
             goal.publish_feedback(message_from_seed(action_type.Feedback, 4))
@@ -119,7 +119,7 @@ class TypedPeer(Node):
         """Send a goal with the values of seed 3, and return feedback, result, and the expected values of all three."""
         action_type = interface(name)
         client = ActionClient(self, action_type, _topic(name))
-        assert client.wait_for_server(SECONDS)
+        assert client.wait_for_server(TIMEOUT_S)
         feedback: list[Any] = []
         has_feedback = threading.Event()
 
@@ -129,7 +129,7 @@ class TypedPeer(Node):
 
         goal = result_of(client.send_goal_async(message_from_seed(action_type.Goal, 3), feedback_callback=on_feedback))
         result = plain(result_of(goal.get_result_async()).result)
-        has_feedback.wait(SECONDS)
+        has_feedback.wait(TIMEOUT_S)
         expected = [
             plain(message_from_seed(message_type, seed))
             for message_type, seed in ((action_type.Goal, 3), (action_type.Feedback, 4), (action_type.Result, 5))

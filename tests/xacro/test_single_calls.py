@@ -23,21 +23,21 @@ from tests.work import ends
 
 from .evaluating import evaluate
 
-LONG = 300_000
+LONG_LENGTH = 300_000
 ALIKE = [i * sys.hash_info.modulus for i in range(60_000)]
 """Integers with equal hashes."""
 ALIKE_PAIRS = [(number, number) for number in ALIKE]
 NUMBERS = [3**12_000 - i for i in range(200)] * 1_000
 TEXTS = {
-    "one letter": "a" * LONG,
-    "half": "a" * (LONG // 2),
-    "other end": "a" * (LONG // 2) + "b",
-    "other beginning": "ab" + "a" * (LONG // 2),
+    "one letter": "a" * LONG_LENGTH,
+    "half": "a" * (LONG_LENGTH // 2),
+    "other end": "a" * (LONG_LENGTH // 2) + "b",
+    "other beginning": "ab" + "a" * (LONG_LENGTH // 2),
     "many letters": "".join(map(chr, range(0x100, 0x8100))),
-    "high letters": "\xe9" * LONG,
+    "high letters": "\xe9" * LONG_LENGTH,
     "codec": "punycode",
     "other codec": "idna",
-    "words": "a b " * (LONG // 4),
+    "words": "a b " * (LONG_LENGTH // 4),
 }
 
 
@@ -71,8 +71,8 @@ def test_string_methods_end_quickly(name: str) -> None:
 
 @pytest.mark.parametrize("name", methods(bytes))
 def test_bytes_methods_end_quickly(name: str) -> None:
-    for text in (b"a" * LONG, b"ab" + b"a" * (LONG // 2), b"a-" * (LONG // 2)):
-        for argument in (b"ab" + b"a" * (LONG // 2), "punycode", "idna", "utf-7"):
+    for text in (b"a" * LONG_LENGTH, b"ab" + b"a" * (LONG_LENGTH // 2), b"a-" * (LONG_LENGTH // 2)):
+        for argument in (b"ab" + b"a" * (LONG_LENGTH // 2), "punycode", "idna", "utf-7"):
             call_quickly(sandbox.attribute(text, name), argument)
 
 

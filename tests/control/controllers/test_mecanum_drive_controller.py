@@ -13,8 +13,8 @@ from tests.control.controllers.driving import roll_wheels, stamped_twist
 
 CONTROLLER_NAME = "base"
 CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
-CENTER_DISTANCE_SUM, RADIUS = 0.5, 0.1
-SIZES = {"wheels_radius": RADIUS, "sum_of_robot_center_projection_on_X_Y_axis": CENTER_DISTANCE_SUM}
+CENTER_DISTANCE_SUM, WHEEL_RADIUS = 0.5, 0.1
+SIZES = {"wheels_radius": WHEEL_RADIUS, "sum_of_robot_center_projection_on_X_Y_axis": CENTER_DISTANCE_SUM}
 PARAMETERS = {f"{corner}_wheel_command_joint_name": corner for corner in CORNERS} | {"kinematics": SIZES}
 
 

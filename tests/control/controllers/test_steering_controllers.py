@@ -15,20 +15,20 @@ from linkwright.control.controllers.tricycle_steering_controller import Tricycle
 from tests.control.controllers.driving import logged_warnings, roll_wheels, stamped_twist, twist
 
 CONTROLLER_NAME = "car"
-WHEELBASE, TRACK, RADIUS = 1.2, 0.8, 0.1
+WHEELBASE, TRACK_WIDTH, WHEEL_RADIUS = 1.2, 0.8, 0.1
 
 TWO_WHEEL_JOINTS = {"traction_joints_names": ["right", "left"], "steering_joints_names": ["steer_right", "steer_left"]}
 ACKERMANN_PARAMETERS = TWO_WHEEL_JOINTS | {
     "wheelbase": WHEELBASE,
-    "traction_track_width": TRACK,
-    "traction_wheels_radius": RADIUS,
+    "traction_track_width": TRACK_WIDTH,
+    "traction_wheels_radius": WHEEL_RADIUS,
 }
 TRICYCLE_PARAMETERS = ACKERMANN_PARAMETERS | {"steering_joints_names": ["steer"]}
 BICYCLE_PARAMETERS = {
     "traction_joints_names": ["wheel"],
     "steering_joints_names": ["steer"],
     "wheelbase": WHEELBASE,
-    "traction_wheel_radius": RADIUS,
+    "traction_wheel_radius": WHEEL_RADIUS,
 }
 CONTROLLERS = [
     (AckermannSteeringController, ACKERMANN_PARAMETERS),
@@ -72,10 +72,12 @@ async def test_ackermann_wheels_roll_about_one_point(bench):
     circle = 1.0 / 0.5
     left, right = joint_commands(bench, "steer_left", "steer_right")
     assert (left, right) == pytest.approx(
-        (atan(WHEELBASE / (circle - TRACK / 2)), atan(WHEELBASE / (circle + TRACK / 2)))
+        (atan(WHEELBASE / (circle - TRACK_WIDTH / 2)), atan(WHEELBASE / (circle + TRACK_WIDTH / 2)))
     )
     left, right = joint_commands(bench, "left", "right")
-    assert (left, right) == pytest.approx((0.5 * (circle - TRACK / 2) / RADIUS, 0.5 * (circle + TRACK / 2) / RADIUS))
+    assert (left, right) == pytest.approx(
+        (0.5 * (circle - TRACK_WIDTH / 2) / WHEEL_RADIUS, 0.5 * (circle + TRACK_WIDTH / 2) / WHEEL_RADIUS)
+    )
 
 
 async def test_steering_track_width_can_differ(bench):
@@ -155,9 +157,9 @@ async def test_humble_accepts_older_parameter_names(bench):
         "front_wheels_names": ["steer_right", "steer_left"],
         "wheelbase": WHEELBASE,
         "front_wheel_track": 0.4,
-        "rear_wheel_track": TRACK,
+        "rear_wheel_track": TRACK_WIDTH,
         "front_wheels_radius": 0.3,
-        "rear_wheels_radius": RADIUS,
+        "rear_wheels_radius": WHEEL_RADIUS,
     }
     for joint in ("right", "left"):
         bench.joint(joint, commands=("velocity",), velocity=0.0)

@@ -15,7 +15,7 @@ from linkwright.control.nodes.teleop.keyboard import TeleopTwistKeyboard
 from linkwright.control.nodes.teleop.keys import keys_in
 from linkwright.diagnostics import LinkwrightError
 from linkwright.nodes import NodeOptions
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 if sys.platform == "win32":
     pytest.skip("Windows has no pseudo-terminals", allow_module_level=True)
@@ -225,7 +225,7 @@ def test_process_restores_terminal(terminal, tmp_path, end):
             process.send_signal(end)
         assert process.stderr is not None
         assert process.stderr.read() == b""
-        assert process.wait(SECONDS) == 0
+        assert process.wait(TIMEOUT_S) == 0
         assert end is None or is_echoing(program_end)
     finally:
         if process.poll() is None:

@@ -21,7 +21,7 @@ from linkwright.graph.executors import (
 )
 from linkwright.graph.loop.future import Future
 from linkwright.messages import String
-from tests.waiting import SECONDS, is_waiting, wait_until
+from tests.waiting import TIMEOUT_S, is_waiting, wait_until
 from tests.work import lines_run
 
 BOTH = pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
@@ -79,8 +79,8 @@ class TestWaiting:
         node.create_timer(0.02, called.set)
         with kind() as executor:
             executor.add_node(node)
-            executor.spin_once(timeout_sec=SECONDS)
-            assert called.wait(SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
+            assert called.wait(TIMEOUT_S)
 
     def test_spin_once_waits_for_timeout(self, executor):
         start = time.monotonic()
@@ -128,8 +128,8 @@ class TestWaiting:
             wait_until(lambda: is_waiting(thread))
             node.create_timer(0.01, called.set)
             executor.add_node(node)
-            assert called.wait(SECONDS)
-        thread.join(SECONDS)
+            assert called.wait(TIMEOUT_S)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
     def test_message_from_another_thread_ends_wait(self, node, executor):
@@ -141,7 +141,7 @@ class TestWaiting:
         publisher.publish(String())
         wait_until(lambda: received)
         executor.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
 
     def test_waiting_does_not_busy_loop(self, node, executor):
         node.create_timer(10.0, lambda: None)
@@ -237,11 +237,11 @@ class TestFaults:
             raise ValueError("mine")
 
         timer = node.create_timer(0.01, fail)
-        executor.spin_once(timeout_sec=SECONDS)
+        executor.spin_once(timeout_sec=TIMEOUT_S)
         timer.cancel()
         future.set_result(None)
         with pytest.raises(ValueError, match="mine"):
-            executor.spin_once(timeout_sec=SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
 
     def test_spin_continues_after_exception(self, node, executor):
         received = []
@@ -267,7 +267,7 @@ class TestShutdown:
         thread = spin_in_thread(executor)
         wait_until(lambda: is_waiting(thread))
         assert executor.shutdown() is True
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
     def test_shutdown_can_be_called_from_callback(self, node, executor):
@@ -279,17 +279,17 @@ class TestShutdown:
 
         def work():
             has_begun.set()
-            assert may_end.wait(SECONDS)
+            assert may_end.wait(TIMEOUT_S)
             ended.append(1)
 
         node.create_timer(0.01, work)
         thread = spin_in_thread(executor)
-        assert has_begun.wait(SECONDS)
+        assert has_begun.wait(TIMEOUT_S)
         assert executor.shutdown(timeout_sec=0.01) is False
         threading.Timer(0.05, may_end.set).start()
         assert executor.shutdown() is True
         assert ended == [1]
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
 
     def test_shutdown_ends_threads(self, node):
         before = threading.active_count()
@@ -297,8 +297,8 @@ class TestShutdown:
         node.create_timer(0.01, called.set)
         executor = MultiThreadedExecutor(4)
         executor.add_node(node)
-        executor.spin_once(timeout_sec=SECONDS)
-        assert called.wait(SECONDS)
+        executor.spin_once(timeout_sec=TIMEOUT_S)
+        assert called.wait(TIMEOUT_S)
         assert threading.active_count() > before
         assert executor.shutdown() is True
         assert threading.active_count() == before
@@ -348,7 +348,7 @@ class TestFutures:
         future = Future()
         with kind() as executor:
             threading.Timer(0.05, future.set_result, ["done"]).start()
-            executor.spin_until_future_complete(future, timeout_sec=SECONDS)
+            executor.spin_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert future.result() == "done"
 
     @BOTH
@@ -374,7 +374,7 @@ class TestFutures:
     def test_canceled_future_ends_wait(self, executor):
         future = Future()
         threading.Timer(0.05, future.cancel).start()
-        executor.spin_until_future_complete(future, timeout_sec=SECONDS)
+        executor.spin_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert future.cancelled()
 
     def test_repeated_waits_leave_one_waiter(self, executor):
@@ -389,7 +389,7 @@ class TestFutures:
         node.create_publisher(String, "chatter", 10).publish(String())
         future = Future()
         future.set_result(None)
-        executor.spin_once_until_future_complete(future, timeout_sec=SECONDS)
+        executor.spin_once_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert received == []
 
 
@@ -414,7 +414,7 @@ class TestGroups:
                 publisher.publish(String())
             wait_until(lambda: len(peaks) == 15)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
         assert max(peaks) == 1
 
     def test_default_group_is_mutually_exclusive(self, node):
@@ -436,7 +436,7 @@ class TestGroups:
                 publisher.publish(String())
             wait_until(lambda: len(peaks) == 10)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
         assert max(peaks) == 1
 
     def test_reentrant_group_runs_callback_concurrently(self, node):
@@ -456,7 +456,7 @@ class TestGroups:
                 publisher.publish(String())
             wait_until(lambda: len(passed) == 3)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
 
     def test_mutually_exclusive_group_keeps_message_order(self, node):
         received = []
@@ -469,7 +469,7 @@ class TestGroups:
                 publisher.publish(String(data=str(number)))
             wait_until(lambda: len(received) == 500)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
         assert received == list(range(500))
 
     def test_coroutine_holds_mutually_exclusive_group_until_end(self, node, executor):
@@ -499,11 +499,11 @@ class TestGroups:
 
         def outer():
             inner.trigger()
-            executor.spin_once(timeout_sec=SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
             calls.append("outer")
 
         node.create_guard_condition(outer).trigger()
-        executor.spin_once(timeout_sec=SECONDS)
+        executor.spin_once(timeout_sec=TIMEOUT_S)
         assert calls == ["inner", "outer"]
 
     def test_custom_callback_group_decides_execution(self, node, executor):
@@ -536,7 +536,7 @@ class TestOwnExecutors:
         received = []
         subscription = node.create_subscription(String, "chatter", received.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
-        handler, entity, its_node = executor.wait_for_ready_callbacks(timeout_sec=SECONDS)
+        handler, entity, its_node = executor.wait_for_ready_callbacks(timeout_sec=TIMEOUT_S)
         assert (entity, its_node) == (subscription, node)
         assert received == []
         handler()
@@ -548,7 +548,7 @@ class TestOwnExecutors:
             raise ValueError("mine")
 
         node.create_guard_condition(fail).trigger()
-        handler, _, _ = executor.wait_for_ready_callbacks(timeout_sec=SECONDS)
+        handler, _, _ = executor.wait_for_ready_callbacks(timeout_sec=TIMEOUT_S)
         handler()
         assert str(handler.exception()) == "mine"
 

@@ -15,7 +15,7 @@ import pytest
 
 from linkwright.graph.executors.multi_threaded import Workers
 from linkwright.graph.executors.work import WorkQueue
-from tests.waiting import SECONDS, is_waiting, wait_until
+from tests.waiting import TIMEOUT_S, is_waiting, wait_until
 
 
 class InterruptedAt:
@@ -75,7 +75,7 @@ def test_interrupt_during_wait_raises_keyboard_interrupt_and_keeps_queue() -> No
     thread.start()
     wait_until(lambda: is_waiting(thread))
     queue.add("something")
-    thread.join(SECONDS)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
 
 
@@ -88,7 +88,7 @@ def test_wake_notifies_all_waiting_threads(rouse: Any) -> None:
     wait_until(lambda: all(map(is_waiting, threads)))
     rouse(queue)
     for thread in threads:
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
 
@@ -108,7 +108,7 @@ def test_earlier_alarm_shortens_wait() -> None:
     wait_until(lambda: is_waiting(thread))
     called: list[int] = []
     queue.call_at(0, lambda: called.append(1))
-    thread.join(SECONDS)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
     assert queue.take() is None
     assert called == [1]

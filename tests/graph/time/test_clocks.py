@@ -26,11 +26,11 @@ from linkwright.messages import get_message
 
 ClockMessage = get_message("rosgraph_msgs/msg/Clock")
 TimeMessage = get_message("builtin_interfaces/msg/Time")
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 def clock_at(seconds):
-    return ClockMessage(clock=TimeMessage(sec=int(seconds), nanosec=round(seconds % 1 * SECOND)))
+    return ClockMessage(clock=TimeMessage(sec=int(seconds), nanosec=round(seconds % 1 * SECOND_NS)))
 
 
 class TestArithmetic:
@@ -40,7 +40,7 @@ class TestArithmetic:
         assert (point + Duration(seconds=1.5)).nanoseconds == 11_500_000_005
         assert Duration(seconds=1.5) + point == point + Duration(seconds=1.5)
         assert (point - Duration(seconds=10)).nanoseconds == 5
-        assert point - Time(seconds=11, clock_type=ClockType.ROS_TIME) == Duration(nanoseconds=5 - SECOND)
+        assert point - Time(seconds=11, clock_type=ClockType.ROS_TIME) == Duration(nanoseconds=5 - SECOND_NS)
         assert Duration(seconds=1) * 2.5 == Duration(seconds=2.5)
         assert Duration(seconds=1) * float("inf") == INFINITE
         assert Duration(seconds=2) - Duration(seconds=1) < Duration(seconds=1.5) <= Duration(seconds=1.5)
@@ -91,7 +91,7 @@ class TestClocks:
     def test_clock_type_selects_clock(self):
         assert isinstance(Clock(clock_type=ClockType.ROS_TIME), ROSClock)
         assert repr(Clock(clock_type=ClockType.STEADY_TIME)) == "Clock(clock_type=STEADY_TIME)"
-        assert abs(Clock().now().nanoseconds - time.time_ns()) < SECOND
+        assert abs(Clock().now().nanoseconds - time.time_ns()) < SECOND_NS
         assert Clock(clock_type=ClockType.STEADY_TIME).now().clock_type is ClockType.STEADY_TIME
         with pytest.raises(TypeError):
             Clock(clock_type=3)
@@ -206,7 +206,7 @@ class TestSimulatedTime:
         set_time(12.5)
         assert node.get_clock().now() == Time(seconds=12.5, clock_type=ClockType.ROS_TIME)
         set_time(3)
-        assert node.get_clock().now_ns() == 3 * SECOND
+        assert node.get_clock().now_ns() == 3 * SECOND_NS
 
     async def test_use_sim_time_can_be_set_later(self, graph):
         node = graph.create_node("node")
@@ -214,7 +214,7 @@ class TestSimulatedTime:
         assert publisher.get_subscription_count() == 0
         node.set_parameters([Parameter("use_sim_time", value=True)])
         publisher.publish(clock_at(7))
-        assert node.get_clock().now_ns() == 7 * SECOND
+        assert node.get_clock().now_ns() == 7 * SECOND_NS
         node.set_parameters([Parameter("use_sim_time", value=False)])
         assert publisher.get_subscription_count() == 0
         assert node.get_clock().now_ns() == graph.clock.now_ns()
@@ -223,7 +223,7 @@ class TestSimulatedTime:
         node, set_time = simulated
         set_time(100)
         calls = []
-        node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND))
+        node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND_NS))
         await clock.advance(60.0)
         assert calls == []
         for seconds in (100.5, 101.0, 101.9, 102.1, 105.5, 106.0):
@@ -235,13 +235,13 @@ class TestSimulatedTime:
         node, set_time = simulated
         set_time(100)
         calls = []
-        timer = node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND))
+        timer = node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND_NS))
         slow_timer = node.create_timer(50.0, lambda: calls.append("once"))
         set_time(101)
         await graph.settle()
         set_time(5)
-        assert timer.time_until_next_call() == SECOND
-        assert slow_timer.time_until_next_call() == 50 * SECOND
+        assert timer.time_until_next_call() == SECOND_NS
+        assert slow_timer.time_until_next_call() == 50 * SECOND_NS
         for seconds in (5.9, 6.0, 7.0):
             set_time(seconds)
             await graph.settle()
@@ -293,7 +293,7 @@ class TestSimulatedTime:
         async def work():
             for _ in range(3):
                 await rate.wait()
-                turns.append(node.get_clock().now_ns() / SECOND)
+                turns.append(node.get_clock().now_ns() / SECOND_NS)
 
         task = asyncio.ensure_future(work())
         await graph.settle()

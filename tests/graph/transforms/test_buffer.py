@@ -18,7 +18,7 @@ from linkwright.graph import (
 )
 from linkwright.messages import TFMessage, TransformBatch
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 def message(*transforms):
@@ -134,12 +134,12 @@ def test_last_duplicate_in_message_applies():
 def test_ages_count_from_last_update_of_dynamic_frames():
     buffer = TransformBuffer()
     buffer.update(message(("world", "base", 1.0)), static=True, now_ns=0)
-    buffer.update(message(("base", "arm", 1.0)), static=False, now_ns=SECOND)
-    snapshot = buffer.snapshot("world", 3 * SECOND)
+    buffer.update(message(("base", "arm", 1.0)), static=False, now_ns=SECOND_NS)
+    snapshot = buffer.snapshot("world", 3 * SECOND_NS)
     assert dict(zip(snapshot.names, snapshot.ages.tolist(), strict=True)) == {"world": 0, "base": 0, "arm": 2.0}
     assert buffer.snapshot("world", 0).ages.tolist() == [0.0, 0.0, 0.0]
-    buffer.update(message(("base", "arm", 1.0)), static=True, now_ns=SECOND)
-    assert buffer.snapshot("world", 3 * SECOND).ages.max() == 0.0
+    buffer.update(message(("base", "arm", 1.0)), static=True, now_ns=SECOND_NS)
+    assert buffer.snapshot("world", 3 * SECOND_NS).ages.max() == 0.0
 
 
 def test_unknown_fixed_frame_has_no_poses():

@@ -22,7 +22,7 @@ from linkwright.graph.time.values import Duration, Time
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import TFMessage, TransformBatch, TransformStamped
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 def stamped(parent, child, seconds=0.0, x=0.0, yaw=0.0):
@@ -356,7 +356,7 @@ def test_velocity_is_computed_from_poses(buffer):
 
 def test_messages_can_contain_arrays(buffer):
     poses = np.array([[1.0, 0, 0, 0, 0, 0, 1], [2.0, 0, 0, 0, 0, 0, 1]])
-    buffer.update(TFMessage(batch=TransformBatch(("a", "b"), ("b", "c"), 5 * SECOND, poses)), static=False)
+    buffer.update(TFMessage(batch=TransformBatch(("a", "b"), ("b", "c"), 5 * SECOND_NS, poses)), static=False)
     assert x_of(buffer, "a", "c") == 3.0
     buffer.update(TFMessage(transforms=[stamped("a", "b", 6, x=7.0), stamped("b", "c", 7, x=0.5)]), static=False)
     assert buffer.get_latest_common_time("a", "c") == time_at(6)

@@ -13,7 +13,7 @@ from linkwright.graph.transforms.broadcaster import StaticTransformBroadcaster, 
 from linkwright.graph.transforms.waiting import Buffer
 from linkwright.messages import TFMessage, get_service
 from tests.graph.transforms.test_core import stamped
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 LATEST = Time()
 
@@ -22,7 +22,7 @@ def test_lookup_waits_for_transform_from_another_thread():
     buffer = Buffer()
     timer = threading.Timer(0.05, lambda: buffer.set_transform(stamped("map", "base", 1, x=2.0), "me"))
     timer.start()
-    transform = buffer.lookup_transform("map", "base", LATEST, timeout=Duration(seconds=SECONDS))
+    transform = buffer.lookup_transform("map", "base", LATEST, timeout=Duration(seconds=TIMEOUT_S))
     assert transform.transform.translation.x == 2.0
     timer.join()
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.launch.engine import guardian_program
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "killpg"), reason="this system has no process groups")
 MARK = "LINKWRIGHT_GUARDED"
@@ -54,7 +54,7 @@ def start() -> Iterator[Start]:
     yield run
     for process in processes:
         process.kill()
-        process.communicate(timeout=SECONDS)
+        process.communicate(timeout=TIMEOUT_S)
 
 
 def guard(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> None:
@@ -69,8 +69,8 @@ def test_guardian_ends_processes_and_removes_folder(
     folder = tmp_path / "files of the launch"
     folder.mkdir()
     guard(monkeypatch, f"+{ordinary.pid}\n+{stubborn.pid}\n+{ended.pid}\n={folder}\n-{ended.pid}\n")
-    assert ordinary.wait(SECONDS) in (1, -signal.SIGINT)
-    assert stubborn.wait(SECONDS) == -signal.SIGKILL
+    assert ordinary.wait(TIMEOUT_S) in (1, -signal.SIGINT)
+    assert stubborn.wait(TIMEOUT_S) == -signal.SIGKILL
     assert ended.poll() is None
     assert not folder.exists()
 
@@ -87,5 +87,5 @@ def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: 
 def test_guardian_finds_unreported_processes_by_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     marked, other = start(**{MARK: "mine"}), start(**{MARK: "theirs"})
     guard(monkeypatch, "", "mine")
-    assert marked.wait(SECONDS) in (1, -signal.SIGINT)
+    assert marked.wait(TIMEOUT_S) in (1, -signal.SIGINT)
     assert other.poll() is None

@@ -24,7 +24,7 @@ from linkwright.hosting.reload import FileWatch
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.packages import PackageFinder, use_finder
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
@@ -109,7 +109,7 @@ async def running(path: Path, *arguments: str, viewer: bool = True, delay: float
             yield Bench(session, err, out)
         finally:
             session.interrupt("the test is over")
-            await asyncio.wait_for(task, SECONDS)
+            await asyncio.wait_for(task, TIMEOUT_S)
 
 
 async def test_saved_file_reaches_running_node(write) -> None:

@@ -20,7 +20,7 @@ from linkwright.packages import PackageFinder, use_finder
 from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 FALLING = box("falling", "0 0 9 0 0 0")
 ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/><link name="tip"><inertial>
@@ -81,7 +81,7 @@ async def launched(folder: Path) -> AsyncIterator[Launched]:
             yield Launched(session, err)
         finally:
             session.interrupt("the test is over")
-            await asyncio.wait_for(task, SECONDS)
+            await asyncio.wait_for(task, TIMEOUT_S)
 
 
 async def test_launched_simulation_reloads_world_and_robot(write) -> None:

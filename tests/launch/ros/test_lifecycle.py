@@ -19,7 +19,7 @@ from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from tests.launch.ending import ends_when, printed
 
-CONFIGURE, DEACTIVATE = 1, 4
+TRANSITION_CONFIGURE, TRANSITION_DEACTIVATE = 1, 4
 
 
 class Managed(LifecycleNodeMixin):
@@ -56,7 +56,7 @@ def log_on_transition(text: str, **filters: Any) -> RegisterEventHandler:
 
 async def test_change_state_triggers_transition_and_event(launch) -> None:
     node = managed()
-    change_state = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
+    change_state = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=TRANSITION_CONFIGURE)
     result = await launch(
         node,
         managed("two"),
@@ -79,7 +79,9 @@ async def test_autostart_activates_node(launch) -> None:
 
 async def test_lifecycle_transition_runs_sequence(launch) -> None:
     nodes = [managed("one"), managed("two")]
-    row = LifecycleTransition(lifecycle_node_names=["one", "/two"], transition_ids=[CONFIGURE, "3", DEACTIVATE])
+    row = LifecycleTransition(
+        lifecycle_node_names=["one", "/two"], transition_ids=[TRANSITION_CONFIGURE, "3", TRANSITION_DEACTIVATE]
+    )
     off = log_on_transition("off", start_state="deactivating", goal_state="inactive")
     result = await launch(*nodes, row, off, ends_when(printed("[launch.user]: off", times=2)))
     assert result.messages == ["off", "off"]
@@ -87,7 +89,7 @@ async def test_lifecycle_transition_runs_sequence(launch) -> None:
 
 async def test_failed_transition_is_reported(launch) -> None:
     node = managed(parameters=[{"fails": True}])
-    change_state = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
+    change_state = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=TRANSITION_CONFIGURE)
     result = await launch(node, EmitEvent(event=change_state), ends_when(printed("Failed to make transition")))
     assert "Failed to make transition 'TRANSITION_CONFIGURE' for LifecycleNode '/one'" in result.err
 

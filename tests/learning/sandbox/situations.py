@@ -34,7 +34,7 @@ _NUMBERS = {
     "x86_64": {"audit": 0xC000003E, "unshare": 272, "mount": 165},
     "aarch64": {"audit": 0xC00000B7, "unshare": 97, "mount": 40},
 }
-_LANDLOCK = 444
+_LANDLOCK_SYSCALL = 444
 _CLONE_NEWUSER = 0x10000000
 
 # name of the system: whether the grader is root, the allowed namespaces, whether there is Landlock
@@ -147,7 +147,7 @@ def _deny(denied: dict[str, int], *, allow_user_namespace: bool, deny_landlock: 
     numbers = _NUMBERS[os.uname().machine]
     rules = [(numbers[name], error) for name, error in denied.items()]
     if deny_landlock:
-        rules.append((_LANDLOCK, errno.ENOSYS))
+        rules.append((_LANDLOCK_SYSCALL, errno.ENOSYS))
     program: list[tuple[int, int, int, int]] = [(0x20, 0, 0, 0)]
     for number, error in rules:
         if number == numbers["unshare"] and allow_user_namespace:

@@ -17,7 +17,7 @@ from linkwright.lsp.python.programs import Program
 from linkwright.lsp.python.router import Router
 from linkwright.lsp.python.servers import Message
 from linkwright.lsp.python.workspace_stubs import WorkspaceStubs
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 SERVER = """
 import json, sys
@@ -230,7 +230,7 @@ def test_close_during_the_search_removes_the_stubs(
     monkeypatch.setattr(WorkspaceStubs, "update", update_slowly)
     connection = connect(program("ty"))
     connection.open()
-    assert started.wait(SECONDS)
+    assert started.wait(TIMEOUT_S)
     assert list(tmp_path.glob("linkwright_stubs_*"))
     connection.router.close()
     assert not list(tmp_path.glob("linkwright_stubs_*"))

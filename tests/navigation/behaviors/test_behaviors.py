@@ -17,33 +17,33 @@ from linkwright.navigation.behaviors.behaviors import (
 )
 from linkwright.navigation.following.follower import Velocity, predict_poses
 
-PERIOD = 0.1
-START = (1.0, 2.0, 0.5)
+PERIOD_S = 0.1
+START_POSE = (1.0, 2.0, 0.5)
 
 
-def run(behavior, is_free=lambda poses: True, start=START):
+def run(behavior, is_free=lambda poses: True, start=START_POSE):
     pose, elapsed, speeds = start, 0.0, []
     while True:
         step = behavior.step(pose, elapsed, is_free)
         if step.outcome is not Outcome.RUNNING:
             return step, pose, elapsed, speeds
         speeds.append(step.velocity)
-        pose = tuple(predict_poses(pose, np.array([step.velocity]), np.array([PERIOD]))[0, 0])
-        elapsed += PERIOD
+        pose = tuple(predict_poses(pose, np.array([step.velocity]), np.array([PERIOD_S]))[0, 0])
+        elapsed += PERIOD_S
 
 
 @pytest.mark.parametrize("angle", [1.57, -1.57, 2.5 * pi])
 def test_spin_turns_by_requested_angle(angle):
-    step, pose, _, speeds = run(Spin(angle, 0.0, SpinParameters(), START))
+    step, pose, _, speeds = run(Spin(angle, 0.0, SpinParameters(), START_POSE))
     assert step.outcome is Outcome.DONE
     assert step.traveled == pytest.approx(angle, abs=0.1)
-    assert pose[2] - START[2] == pytest.approx(angle, abs=0.1)
+    assert pose[2] - START_POSE[2] == pytest.approx(angle, abs=0.1)
     assert max(abs(speed.yaw) for speed in speeds) <= 1.0
 
 
 @pytest.mark.parametrize("distance", [0.5, -0.3])
 def test_drive_straight_covers_requested_distance(distance):
-    step, _, _, speeds = run(DriveStraight(distance, 0.1, 0.0, 2.0, START))
+    step, _, _, speeds = run(DriveStraight(distance, 0.1, 0.0, 2.0, START_POSE))
     assert step.outcome is Outcome.DONE
     assert step.traveled == pytest.approx(abs(distance), abs=0.011)
     assert {np.sign(speed.x) for speed in speeds} == {np.sign(distance)}
@@ -58,7 +58,7 @@ def test_drive_straight_stops_before_obstacle():
 
 
 def test_drive_straight_ends_after_time_allowance():
-    step, _, elapsed, _ = run(DriveStraight(5.0, 0.1, 3.0, 2.0, START))
+    step, _, elapsed, _ = run(DriveStraight(5.0, 0.1, 3.0, 2.0, START_POSE))
     assert step.outcome is Outcome.TIMEOUT
     assert 3.0 <= elapsed <= 3.11
 

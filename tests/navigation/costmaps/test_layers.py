@@ -21,8 +21,8 @@ from linkwright.navigation.costmaps.static_layer import Interpretation, StaticLa
 from linkwright.navigation.costmaps.voxel_layer import VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 
-RADIUS = 0.2
-SECOND = 1_000_000_000
+ROBOT_RADIUS_M = 0.2
+SECOND_NS = 1_000_000_000
 ROBOT_POSE = (2.05, 2.05, 0.0)
 
 
@@ -32,7 +32,7 @@ def empty_grid(size: float = 4.0, resolution: float = 0.1) -> Grid:
 
 
 def costmap(*layers, size: float = 4.0, **options) -> LayeredCostmap:
-    return LayeredCostmap(empty_grid(size), layers, circle(RADIUS), **options)
+    return LayeredCostmap(empty_grid(size), layers, circle(ROBOT_RADIUS_M), **options)
 
 
 def occupancy(rows: int = 40, columns: int = 40) -> Grid:
@@ -50,7 +50,7 @@ class OverheadSensor:
         self.time_ns = 0
 
     def observe(self, *points, origin=(2.05, 2.05, 0.3)) -> np.ndarray:
-        self.time_ns += SECOND
+        self.time_ns += SECOND_NS
         points = np.array([(*point, 0.3)[:3] if len(point) == 2 else point for point in points], float).reshape(-1, 3)
         self.buffer.add(np.array(origin, float), points, self.time_ns)
         return self.update()
@@ -192,8 +192,8 @@ def test_silent_sensor_makes_costmap_outdated():
     sensor = OverheadSensor(expected_update_rate=1.0)
     assert not sensor.costmap.is_current(0)
     sensor.observe((2.55, 2.05))
-    assert sensor.costmap.is_current(sensor.time_ns + SECOND)
-    assert not sensor.costmap.is_current(sensor.time_ns + 2 * SECOND)
+    assert sensor.costmap.is_current(sensor.time_ns + SECOND_NS)
+    assert not sensor.costmap.is_current(sensor.time_ns + 2 * SECOND_NS)
 
 
 def test_footprint_of_robot_is_cleared():
@@ -303,8 +303,8 @@ class RangeSensor:
 
     def measure(self, distance: float, *, free: bool = False, times: int = 5) -> np.ndarray:
         for _ in range(times):
-            self.layer.add(RangeReading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND))
-        self.costmap.update(ROBOT_POSE, SECOND)
+            self.layer.add(RangeReading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND_NS))
+        self.costmap.update(ROBOT_POSE, SECOND_NS)
         return self.costmap.costmap.grid.cells
 
 
@@ -334,17 +334,17 @@ def test_sonar_reading_without_echo_clears_cone():
 
 def test_silent_sonar_makes_costmap_outdated():
     sonar = RangeSensor(no_readings_timeout=1.0)
-    assert not sonar.costmap.is_current(SECOND)
+    assert not sonar.costmap.is_current(SECOND_NS)
     sonar.measure(1.0)
-    assert sonar.costmap.is_current(2 * SECOND)
-    assert not sonar.costmap.is_current(3 * SECOND)
+    assert sonar.costmap.is_current(2 * SECOND_NS)
+    assert not sonar.costmap.is_current(3 * SECOND_NS)
 
 
 def test_clearing_resets_sonar_likelihoods():
     sonar = RangeSensor()
     sonar.measure(1.0)
     sonar.costmap.clear_around(ROBOT_POSE, 9.0)
-    sonar.costmap.update(ROBOT_POSE, SECOND)
+    sonar.costmap.update(ROBOT_POSE, SECOND_NS)
     assert not sonar.costmap.costmap.grid.cells.any()
     assert (sonar.layer.layer_grid.cells == 127).all()
 
@@ -400,7 +400,7 @@ def test_clear_around_clears_inside_or_outside_of_window():
 def test_clearing_removes_observations_and_keeps_map():
     layer = StaticLayer(Interpretation())
     sensor = OverheadSensor(layers=[])
-    robot = LayeredCostmap(empty_grid(), [layer, sensor.layer], circle(RADIUS))
+    robot = LayeredCostmap(empty_grid(), [layer, sensor.layer], circle(ROBOT_RADIUS_M))
     grid = occupancy()
     grid.cells[3, 3] = 100
     layer.set_map(grid)

@@ -8,16 +8,16 @@ import pytest
 from linkwright.navigation.estimation.estimator import Estimator, Timing
 from linkwright.navigation.estimation.kalman import ExtendedKalmanFilter, Settings
 from linkwright.navigation.estimation.motion_model import SIZE, State
-from tests.navigation.estimation.test_kalman import SECOND, measurement_of
+from tests.navigation.estimation.test_kalman import SECOND_NS, measurement_of
 
 
 def estimator(**timing):
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=np.eye(SIZE)))
-    return Estimator(kalman, Timing(**{"sensor_timeout_ns": SECOND, **timing}))
+    return Estimator(kalman, Timing(**{"sensor_timeout_ns": SECOND_NS, **timing}))
 
 
 def advance(estimator, seconds):
-    estimator.advance(round(seconds * SECOND))
+    estimator.advance(round(seconds * SECOND_NS))
     return estimator.filter
 
 
@@ -40,7 +40,7 @@ def test_future_measurement_is_delayed():
 
 
 def test_state_is_predicted_only_after_sensor_timeout():
-    active = estimator(sensor_timeout_ns=SECOND // 2)
+    active = estimator(sensor_timeout_ns=SECOND_NS // 2)
     active.add(measurement_of(0.0, vx=1.0))
     assert advance(active, 0.0).time_ns == 0
     assert advance(active, 0.4).time_ns == 0
@@ -56,7 +56,7 @@ def test_no_prediction_before_first_measurement():
 
 def test_late_measurement_is_processed_at_its_stamp():
     measurements = [measurement_of(0.1 * step, x=np.sin(0.1 * step), vx=np.cos(0.1 * step)) for step in range(20)]
-    in_order, out_of_order = estimator(history_ns=10 * SECOND), estimator(history_ns=10 * SECOND)
+    in_order, out_of_order = estimator(history_ns=10 * SECOND_NS), estimator(history_ns=10 * SECOND_NS)
     for measurement in measurements:
         in_order.add(measurement)
         advance(in_order, 5.0)
@@ -70,13 +70,13 @@ def test_late_measurement_is_processed_at_its_stamp():
 
 
 def test_measurement_older_than_history_is_applied_at_history_start():
-    active = estimator(history_ns=SECOND)
+    active = estimator(history_ns=SECOND_NS)
     for step in range(50):
         active.add(measurement_of(0.1 * step, x=0.0))
         advance(active, 0.1 * step)
     active.add(measurement_of(1.0, x=1.0))
     state = advance(active, 5.0)
-    assert state.time_ns == round(4.9 * SECOND)
+    assert state.time_ns == round(4.9 * SECOND_NS)
     assert state.state[State.X] != 0.0
 
 

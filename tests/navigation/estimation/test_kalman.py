@@ -16,7 +16,7 @@ from linkwright.navigation.estimation.kalman import (
 )
 from linkwright.navigation.estimation.motion_model import SIZE, State, state_jacobian, wrap_angle
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 FILTERS = pytest.mark.parametrize("filter_type", [ExtendedKalmanFilter, UnscentedKalmanFilter])
 
 
@@ -25,7 +25,7 @@ def measurement_of(time_s, variance=0.01, threshold=inf, **values):
     for name, value in values.items():
         index = State[name.upper()]
         vector[index], covariance[index, index], measured[index] = value, variance, True
-    return Measurement("sensor", round(time_s * SECOND), vector, covariance, tuple(measured), threshold)
+    return Measurement("sensor", round(time_s * SECOND_NS), vector, covariance, tuple(measured), threshold)
 
 
 def diagonal(**values):
@@ -40,7 +40,7 @@ def test_first_measurement_initializes_state(filter_type):
     kalman = filter_type()
     assert kalman.process(measurement_of(5.0, 0.3, x=2.0, yaw=1.0))
     assert kalman.is_initialized
-    assert kalman.time_ns == 5 * SECOND
+    assert kalman.time_ns == 5 * SECOND_NS
     assert (kalman.state[State.X], kalman.state[State.YAW], kalman.state[State.Y]) == (2.0, 1.0, 0.0)
     assert kalman.covariance[State.X, State.X] == 0.3
     assert kalman.covariance[State.Y, State.Y] == 1e-9
@@ -111,7 +111,7 @@ def test_filter_matches_batch_least_squares(filter_type):
             measurements.append(measurement_of(time, 0.02, vx=1.0 + random.normal(0, 0.1)))
         else:
             measurements.append(measurement_of(time, 0.3, ax=random.normal(0, 0.5), vy=random.normal(0, 0.5)))
-    steps = list(np.diff([measurement.time_ns for measurement in measurements]) / SECOND)
+    steps = list(np.diff([measurement.time_ns for measurement in measurements]) / SECOND_NS)
     for measurement in measurements:
         kalman.process(measurement)
     free, state, covariance = batch_solution(settings, measurements, steps)
@@ -196,20 +196,20 @@ def test_past_measurement_corrects_without_moving_time_back():
     kalman = ExtendedKalmanFilter()
     kalman.process(measurement_of(2.0, x=0.0))
     kalman.process(measurement_of(1.0, x=1.0))
-    assert kalman.time_ns == 2 * SECOND
+    assert kalman.time_ns == 2 * SECOND_NS
     assert 0.0 < kalman.state[State.X] < 1.0
 
 
 def test_dynamic_process_noise_grows_with_velocity():
     kalman = ExtendedKalmanFilter(Settings(uses_dynamic_noise=True, initial_covariance=np.zeros((SIZE, SIZE))))
     kalman.is_initialized = True
-    kalman.predict(SECOND)
+    kalman.predict(SECOND_NS)
     assert kalman.covariance[State.X, State.X] == 0.0
     assert kalman.covariance[State.VX, State.VX] == pytest.approx(0.025)
     kalman.restore(kalman.snapshot())
     kalman.covariance[:] = 0.0
     kalman.state[State.VX] = 2.0
-    kalman.predict(2 * SECOND)
+    kalman.predict(2 * SECOND_NS)
     assert kalman.covariance[State.X, State.X] == pytest.approx(0.05 * 4.0)
 
 
@@ -217,15 +217,15 @@ def test_commands_accelerate_within_limits_and_time_out():
     unit_gains, limits = (1.0,) * 6, (0.5,) * 6
     is_controlled = (True, False, False, False, False, True)
     kalman = ExtendedKalmanFilter(
-        Settings(control=Control(is_controlled, SECOND, limits, unit_gains, limits, unit_gains))
+        Settings(control=Control(is_controlled, SECOND_NS, limits, unit_gains, limits, unit_gains))
     )
     kalman.process(measurement_of(0.0, vx=0.0, vyaw=0.0))
     kalman.command = (np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.1]), 0)
-    kalman.predict(SECOND // 2)
+    kalman.predict(SECOND_NS // 2)
     assert kalman.state[State.AX] == 0.5
     assert kalman.state[State.VX] == pytest.approx(0.25)
     assert kalman.state[State.VYAW] == pytest.approx(0.05)
-    kalman.predict(2 * SECOND)
+    kalman.predict(2 * SECOND_NS)
     assert kalman.state[State.AX] == pytest.approx(-0.25)
 
 

@@ -17,7 +17,7 @@ from linkwright.navigation.estimation.readings import (
     subtract_gravity,
 )
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 ALL = (True,) * SIZE
 SIX = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 
@@ -47,7 +47,7 @@ def test_relative_poses_start_at_first_pose():
     reader = PoseReader(ALL, relative=True)
     first = reader.read(pose(5.0, 1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0)
     assert first.values == pytest.approx(np.zeros(SIZE))
-    second = reader.read(pose(5.0, 3.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, SECOND)
+    second = reader.read(pose(5.0, 3.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, SECOND_NS)
     assert second.values[POSITION] == pytest.approx([2.0, 0.0, 0.0])
     reader.reset()
     assert reader.read(pose(9.0), SIX, IDENTITY, 0).values == pytest.approx(np.zeros(SIZE))
@@ -56,12 +56,12 @@ def test_relative_poses_start_at_first_pose():
 def test_differential_poses_give_velocities():
     reader = PoseReader(axes("X", "Y", "YAW"), differential=True)
     assert reader.read(pose(1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0) is None
-    reading = reader.read(pose(1.0, 1.0, rpy=(0, 0, pi / 2 + 0.1)), SIX, IDENTITY, SECOND // 2)
+    reading = reader.read(pose(1.0, 1.0, rpy=(0, 0, pi / 2 + 0.1)), SIX, IDENTITY, SECOND_NS // 2)
     assert reading.values[VELOCITY] == pytest.approx([2.0, 0.0, 0.0])
     assert reading.values[State.VYAW] == pytest.approx(0.2)
     assert measured_names(reading.used) == {"VX", "VY", "VYAW"}
     assert np.diag(reading.covariance)[TWIST] == pytest.approx(np.diag(SIX) * 2.0 * 0.5)
-    assert reader.read(pose(), SIX, IDENTITY, SECOND // 2) is None
+    assert reader.read(pose(), SIX, IDENTITY, SECOND_NS // 2) is None
 
 
 def test_two_d_mode_fixes_remaining_states_to_zero():

@@ -12,7 +12,7 @@ from linkwright.navigation.following.follower import ZERO_VELOCITY, ControlInput
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.grids.grid import Grid
 
-PERIOD = 0.05
+PERIOD_S = 0.05
 
 
 def floor(size=10.0, resolution=0.05):
@@ -49,7 +49,7 @@ def control_input(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=No
         path=path,
         costmap=costmap or floor(),
         footprint=circle(0.2) if footprint is None else footprint,
-        period=PERIOD,
+        period=PERIOD_S,
         xy_tolerance=xy_tolerance,
     )
 
@@ -70,7 +70,7 @@ def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles
             followed_path.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance
         )
         velocity = follower.compute_velocity(cycle_input)
-        pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])
+        pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD_S]))[0, 0])
         poses.append(pose)
         velocities.append(velocity)
     return np.array(poses), np.array(velocities)

@@ -28,7 +28,7 @@ from linkwright.navigation.following.pure_pursuit import (
 )
 from linkwright.navigation.following.rotation_shim import RotationShim
 from linkwright.navigation.following.sampling import SamplingFollower, SamplingParameters, VelocityLimits
-from tests.navigation.following.driving import PERIOD, control_input, drive, floor, line, put_box
+from tests.navigation.following.driving import PERIOD_S, control_input, drive, floor, line, put_box
 
 CORNER = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))
 FOLLOWERS = [
@@ -83,7 +83,7 @@ class TestPurePursuit:
     def test_robot_rotates_to_heading_before_driving(self):
         command = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.0, 2.0))))
         assert command.x == 0.0
-        assert command.yaw == pytest.approx(3.2 * PERIOD)
+        assert command.yaw == pytest.approx(3.2 * PERIOD_S)
 
     def test_speed_is_reduced_near_goal_and_obstacles(self):
         near_goal = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.3, 0.0))))
@@ -109,8 +109,8 @@ class TestPurePursuit:
 
     @given(angle=st.floats(-pi, pi), current=st.floats(-1.8, 1.8))
     def test_rotation_speed_respects_acceleration(self, angle, current):
-        speed = rotation_speed(angle, current, PERIOD, 1.8, 3.2)
-        assert abs(speed - current) <= 3.2 * PERIOD + 1e-9
+        speed = rotation_speed(angle, current, PERIOD_S, 1.8, 3.2)
+        assert abs(speed - current) <= 3.2 * PERIOD_S + 1e-9
         assert abs(speed) <= 1.8 + 1e-9
 
     def test_speed_limit_is_applied_and_removed(self):
@@ -143,7 +143,7 @@ class TestSampling:
             velocity, command, limits.min_velocity, limits.max_velocity, limits.acceleration, strict=True
         ):
             assert lowest - 1e-9 <= new <= highest + 1e-9
-            assert abs(new - old) <= acceleration * PERIOD + 1e-9
+            assert abs(new - old) <= acceleration * PERIOD_S + 1e-9
 
     @pytest.mark.parametrize("y", [0.0, 0.25, 0.4])
     def test_robot_avoids_box(self, y):

@@ -19,7 +19,7 @@ from tests.places import GAZEBO_PACKAGE, PACKAGE
 
 HOUSE = GAZEBO_PACKAGE / "worlds" / "house.world"
 MBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
-START = (0.0, 0.0, 0.0)
+START_POSE = (0.0, 0.0, 0.0)
 TOUR = [
     (-2.0, 0.0), (-2.0, 1.9), (-2.8, 1.7), (-2.0, 1.7), (-2.0, -0.2), (-3.6, -0.1), (-2.2, -0.8), (-2.2, -2.9),
     (-0.2, -2.6), (0.6, -1.7), (2.3, -1.7), (3.4, -0.6), (3.6, -1.6), (2.2, -1.7), (0.6, -1.7), (0.0, 0.2), (0.0, 2.5),
@@ -29,12 +29,12 @@ TOUR = [
 
 
 def simulation(**options: Any) -> SteppedSimulation:
-    """Return a simulation of the house with mbot at `START`."""
+    """Return a simulation of the house with mbot at `START_POSE`."""
     return SteppedSimulation(
         HOUSE,
         MBOT,
         arguments={"laser": "true"},
-        pose=(*START[:2], 0, 0, 0, START[2]),
+        pose=(*START_POSE[:2], 0, 0, 0, START_POSE[2]),
         robot_state_publisher=True,
         **options,
     )

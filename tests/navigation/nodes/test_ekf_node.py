@@ -16,7 +16,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.testing.stepped import AsyncSteppedGraph
 
 X, Y, YAW, VX, VY, VYAW, AX = 0, 1, 5, 6, 7, 11, 12
-START = 100.0
+START_S = 100.0
 
 
 def sensor_config(*measured_indices):
@@ -25,7 +25,7 @@ def sensor_config(*measured_indices):
 
 @pytest.fixture
 async def test():
-    async with AsyncSteppedGraph(start=START) as graph:
+    async with AsyncSteppedGraph(start=START_S) as graph:
         yield graph
 
 
@@ -96,7 +96,7 @@ async def test_odometry_and_gyroscope_are_fused(test):
         test.publish("/wheels", odometry(test, vx=1.0, vyaw=9.0, variance=1e-4))
         test.publish("/imu", imu(test, yaw=2.0, vyaw=0.5, variance=1e-6))
         await test.advance(0.01)
-    turned = 0.5 * (filtered.last.header.stamp.nanoseconds / 1e9 - START)
+    turned = 0.5 * (filtered.last.header.stamp.nanoseconds / 1e9 - START_S)
     x, y, yaw = planar(filtered.last)
     assert yaw == pytest.approx(turned, abs=1e-2)
     assert (x, y) == pytest.approx((2.0 * sin(turned), 2.0 * (1.0 - cos(turned))), abs=2e-2)
@@ -177,7 +177,7 @@ async def test_map_world_frame_publishes_odom_transform(test):
     (transform,) = tf.last.transforms
     assert (transform.header.frame_id, transform.child_frame_id) == ("map", "odom")
     assert transform.transform.translation.x == pytest.approx(3.0)
-    assert transform.header.stamp.nanoseconds == round((START + 0.5) * 1e9)
+    assert transform.header.stamp.nanoseconds == round((START_S + 0.5) * 1e9)
 
 
 async def test_differential_and_relative_poses_are_fused(test):
@@ -255,7 +255,7 @@ async def test_old_message_is_ignored(test):
     filtered = test.record("/odometry/filtered")
     test.publish("/wheels", odometry(test, x=1.0))
     await test.advance(0.2)
-    test.publish("/wheels", odometry(test, x=9.0, stamp=START - 5.0))
+    test.publish("/wheels", odometry(test, x=9.0, stamp=START_S - 5.0))
     await test.advance(0.2)
     assert planar(filtered.last)[0] == pytest.approx(1.0)
     assert len(log_texts(test, "WARN")) == 1

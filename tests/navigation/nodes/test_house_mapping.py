@@ -23,7 +23,7 @@ from tests.navigation.nodes.house import (
     visible_points,
 )
 
-CELL = 0.05
+CELL_SIZE_M = 0.05
 
 
 @pytest.mark.slow
@@ -59,9 +59,9 @@ def test_house_walls_are_mapped_within_5_cm_and_loop_is_closed(monkeypatch):
     occupied = occupied_centers(grid)
     near_walls = occupied[distances(walls, occupied) < 0.2]
     assert len(near_walls) > 900
-    assert distances(solid, near_walls).max() < CELL + 1e-4
+    assert distances(solid, near_walls).max() < CELL_SIZE_M + 1e-4
     visible = visible_points(walls, grid)
     assert len(visible) > 800
     gap_sizes = gaps(grid, visible)
-    assert np.quantile(gap_sizes, 0.99) < CELL
-    assert gap_sizes.max() < 3 * CELL  # gaps are only at the edges of visible parts
+    assert np.quantile(gap_sizes, 0.99) < CELL_SIZE_M
+    assert gap_sizes.max() < 3 * CELL_SIZE_M  # gaps are only at the edges of visible parts

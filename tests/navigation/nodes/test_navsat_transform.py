@@ -16,7 +16,7 @@ from linkwright.navigation.nodes.robot_localization.navsat_transform import Navs
 from linkwright.nodes import NodeOptions
 from linkwright.testing.stepped import AsyncSteppedGraph
 
-HERE = (48.5, 9.0)
+START_LATITUDE_LONGITUDE = (48.5, 9.0)
 """The center of zone 32, where the grid is not rotated."""
 
 
@@ -42,8 +42,8 @@ def set_yaw(message, yaw):
 
 async def fix(test, east=0.0, north=0.0, altitude=200.0, frame="gps"):
     """Return a receiver's fix at some meters from the start, on the grid."""
-    zone = zone_from_degrees(*HERE)
-    x, y = utm_from_degrees(*HERE, zone)
+    zone = zone_from_degrees(*START_LATITUDE_LONGITUDE)
+    x, y = utm_from_degrees(*START_LATITUDE_LONGITUDE, zone)
     message = with_header(test, "sensor_msgs/msg/NavSatFix", frame)
     message.latitude, message.longitude = degrees_from_utm(x + east, y + north, zone)
     message.altitude = altitude
@@ -115,17 +115,17 @@ async def test_odometry_is_published_as_fixes(test):
     await test.advance(0.15)
     await odometry(test, x=5.0, y=100.0)
     await test.advance(0.1)
-    zone = zone_from_degrees(*HERE)
-    x, y = utm_from_degrees(*HERE, zone)
+    zone = zone_from_degrees(*START_LATITUDE_LONGITUDE)
+    x, y = utm_from_degrees(*START_LATITUDE_LONGITUDE, zone)
     east, north = utm_from_degrees(filtered.last.latitude, filtered.last.longitude, zone)
     assert (east - x, north - y, filtered.last.altitude) == pytest.approx((0.0, 100.0, 200.0), abs=1e-4)
 
 
 async def test_datum_is_used_by_conversion_services(test):
-    start(test, wait_for_datum=True, datum=[*HERE, 0.0])
+    start(test, wait_for_datum=True, datum=[*START_LATITUDE_LONGITUDE, 0.0])
     request = get_service("robot_localization/srv/FromLL").Request()
-    zone = zone_from_degrees(*HERE)
-    x, y = utm_from_degrees(*HERE, zone)
+    zone = zone_from_degrees(*START_LATITUDE_LONGITUDE)
+    x, y = utm_from_degrees(*START_LATITUDE_LONGITUDE, zone)
     request.ll_point.latitude, request.ll_point.longitude = degrees_from_utm(x + 20.0, y - 7.0, zone)
     converted_point = (await test.call("/fromLL", request)).map_point
     assert (converted_point.x, converted_point.y) == pytest.approx((20.0, -7.0), abs=1e-6)
@@ -151,12 +151,12 @@ async def test_datum_is_used_by_conversion_services(test):
 
 
 async def test_local_cartesian_mode_uses_tangent_plane(test):
-    start(test, wait_for_datum=True, datum=[*HERE, pi / 2], use_local_cartesian=True)
+    start(test, wait_for_datum=True, datum=[*START_LATITUDE_LONGITUDE, pi / 2], use_local_cartesian=True)
     request = get_service("robot_localization/srv/FromLL").Request()
     ll_point = request.ll_point
-    ll_point.latitude, ll_point.longitude, ll_point.altitude = TangentPlane(*HERE, 0.0).geodetic_from_point(
-        (3.0, 50.0, 2.0)
-    )
+    ll_point.latitude, ll_point.longitude, ll_point.altitude = TangentPlane(
+        *START_LATITUDE_LONGITUDE, 0.0
+    ).geodetic_from_point((3.0, 50.0, 2.0))
     map_point = (await test.call("/fromLL", request)).map_point
     assert (map_point.x, map_point.y, map_point.z) == pytest.approx((50.0, -3.0, 2.0), abs=1e-5)
 

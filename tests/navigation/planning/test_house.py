@@ -14,7 +14,7 @@ from linkwright.navigation.planning.planner import run_to_end
 from linkwright.navigation.planning.potential import compute_potential, crossing_prices
 from tests.places import GAZEBO_PACKAGE
 
-ROBOT = 0.22
+ROBOT_RADIUS_M = 0.22
 WALLS = np.array((4.9, 3.9))
 """The distances in meters from the origin to the inner sides of the outer walls, along x and y."""
 ROOM_POINTS = {
@@ -35,7 +35,7 @@ def house() -> Grid:
 def reachable_cells(grid: Grid) -> np.ndarray:
     """Return the cells that a planner reaches from the living room; unknown cells are allowed."""
     distances = distance_field(grid.cells == OCCUPIED, grid.resolution)
-    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, ROBOT)
+    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, ROBOT_RADIUS_M)
     costs = np.where(distances > 0.6, 0, costs).astype(np.uint8)
     costs[(grid.cells == UNSEEN) & (costs < INSCRIBED)] = UNKNOWN
     row, column = grid.cells_of(np.array(ROOM_POINTS["living room"]))

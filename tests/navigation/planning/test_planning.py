@@ -18,11 +18,11 @@ from linkwright.navigation.planning.planner import PlanError, Problem, Settings,
 from linkwright.navigation.planning.potential import NEUTRAL_COST, compute_potential, crossing_prices
 from linkwright.navigation.planning.smoothing import Smoothing, smooth_path
 
-RESOLUTION = 0.1
+RESOLUTION_M = 0.1
 
 
 def costmap(cells) -> Costmap:
-    return Costmap(Grid(cells=np.asarray(cells, np.uint8), resolution=RESOLUTION))
+    return Costmap(Grid(cells=np.asarray(cells, np.uint8), resolution=RESOLUTION_M))
 
 
 def costmap_of_text(*rows: str) -> Costmap:
@@ -35,7 +35,7 @@ def costmap_of_text(*rows: str) -> Costmap:
 
 
 def inflated_costmap(obstacles) -> Costmap:
-    distances = distance_field(obstacles, RESOLUTION)
+    distances = distance_field(obstacles, RESOLUTION_M)
     costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, 0.2)
     return costmap(np.where(distances > 0.6, 0, costs))
 
@@ -145,7 +145,7 @@ def test_plan_in_open_space_is_straight():
     assert path[0, :2].tolist() == [0.55, 0.55]
     assert path[-1].tolist() == [7.05, 4.75, 1.0]
     assert length(path) == pytest.approx(hypot(6.5, 4.2), rel=0.01)
-    assert np.hypot(*np.diff(path[:, :2], axis=0).T).max() < 2 * RESOLUTION
+    assert np.hypot(*np.diff(path[:, :2], axis=0).T).max() < 2 * RESOLUTION_M
 
 
 @pytest.mark.parametrize("seed", range(25))
@@ -163,7 +163,7 @@ def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
     assert highest_cost(robot, path) <= MAX_PASSABLE
     midpoints = (path[1:, :2] + path[:-1, :2]) / 2.0
     cells = robot.grid.cells_of(midpoints)
-    steps = np.hypot(*np.diff(path[:, :2], axis=0).T) / RESOLUTION
+    steps = np.hypot(*np.diff(path[:, :2], axis=0).T) / RESOLUTION_M
     assert (crossing_costs[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL_COST
 
 

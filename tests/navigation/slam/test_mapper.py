@@ -15,9 +15,9 @@ from linkwright.navigation.slam.settings import MapperSettings
 from linkwright.navigation.slam.steps import run_to_end
 from tests.navigation.slam.scenes import along, box, drifting, house, scan_at
 
-HALF_A_SECOND = 500_000_000
+HALF_SECOND_NS = 500_000_000
 CORRIDOR_CORNERS = [(-4, -3), (4, -3), (4, 3), (-4, 3), (-4, -3), (1, -3)]
-AROUND_IT = along(CORRIDOR_CORNERS, step=0.25, turn=0.25)
+CORRIDOR_PATH = along(CORRIDOR_CORNERS, step=0.25, turn=0.25)
 
 
 def map_path(walls, path, odometry, settings=None, farthest=12.0, count=180):
@@ -26,7 +26,7 @@ def map_path(walls, path, odometry, settings=None, farthest=12.0, count=180):
     rng = np.random.default_rng(9)
     outcomes, true_poses = [], []
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
-        stamp_ns = number * HALF_A_SECOND
+        stamp_ns = number * HALF_SECOND_NS
         if mapper.should_process(text, stamp_ns):
             scan = scan_at(walls, pose, stamp_ns, rng, count, farthest)
             outcomes.append(run_to_end(mapper.process(scan, text)))
@@ -40,7 +40,7 @@ def max_error(errors):
 
 @pytest.mark.parametrize("yaw_per_meter", [0.0, 0.03, 0.08])
 def test_apartment_is_mapped_despite_odometry_drift(yaw_per_meter):
-    path = AROUND_IT
+    path = CORRIDOR_PATH
     odometry = drifting(path, 1.03, yaw_per_meter, 0.02, np.random.default_rng(1))
     mapper, outcomes, true_poses = map_path(house(), path, odometry)
     errors = relative_pose(true_poses, mapper.graph.poses)
@@ -106,15 +106,15 @@ def test_poses_follow_odometry_without_scan_matching():
 
 
 def test_robot_is_localized_in_fixed_map():
-    mapper, _, _ = map_path(house(), AROUND_IT, AROUND_IT)
+    mapper, _, _ = map_path(house(), CORRIDOR_PATH, CORRIDOR_PATH)
     count, walls = len(mapper.scans), house()
     mapper.begin_session(np.array([3.2, -2.2, 1.3]))
     path = along([(4, -3), (4, 3), (-4, 3)])
     odometry = drifting(relative_pose(path[0], path), 1.05, 0.05)
     rng = np.random.default_rng(4)
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
-        if mapper.should_process(text, number * HALF_A_SECOND):
-            outcome = run_to_end(mapper.localize(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
+        if mapper.should_process(text, number * HALF_SECOND_NS):
+            outcome = run_to_end(mapper.localize(scan_at(walls, pose, number * HALF_SECOND_NS, rng, 180), text))
             assert outcome.is_matched
             assert relative_pose(pose, outcome.pose) == pytest.approx([0, 0, 0], abs=0.03)
     assert len(mapper.scans) == count
@@ -130,7 +130,7 @@ def test_second_session_continues_map():
     rng = np.random.default_rng(4)
     true_poses = []
     for number, (pose, text) in enumerate(zip(path, odometry, strict=True)):
-        if mapper.should_process(text, number * HALF_A_SECOND):
-            run_to_end(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), text))
+        if mapper.should_process(text, number * HALF_SECOND_NS):
+            run_to_end(mapper.process(scan_at(walls, pose, number * HALF_SECOND_NS, rng, 180), text))
             true_poses.append(pose)
     assert max_error(relative_pose(np.array(true_poses), mapper.graph.poses[count:])) < 0.03

@@ -6,9 +6,9 @@ import asyncio
 
 from linkwright.messages import get_message
 from tests.panels.monitor.test_live_panels import samples, subscriptions
-from tests.panels.test_live_history import KEPT
+from tests.panels.test_live_history import MAX_HISTORY_BYTES
 from tests.panels.test_time import config
-from tests.panels.test_timeline import START, open_recording
+from tests.panels.test_timeline import START_S, open_recording
 from tests.skipping import skipping
 from tests.viewer.scene import open_world, page
 from tests.waiting import eventually
@@ -25,7 +25,7 @@ async def plotted(client, values: list[float]) -> None:
 
 @skipping
 async def test_plots_follow_time_back_and_are_complete_in_live_mode():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
         await eventually(lambda: subscriptions(world, "/speed") == 1)
@@ -49,7 +49,7 @@ async def test_plots_follow_time_back_and_are_complete_in_live_mode():
 
 @skipping
 async def test_added_series_begins_with_stored_samples():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
         await eventually(lambda: subscriptions(world, "/speed") == 1)
@@ -69,7 +69,7 @@ async def test_plots_of_recording_show_samples_before_playback_time(tmp_path):
         await client.until("playhead", playing=False)
         await client.send("watch_series", series=[{"id": 1, "topic": "/p", "path": "point.x"}], seconds=3.5)
         for second in (9, 4):
-            await client.send("seek_time", position=START + second)
+            await client.send("seek_time", position=START_S + second)
             await plotted(client, [second - 3.0, second - 2.0, second - 1.0, float(second)])
         await client.send("step_time", forward=True)
         await plotted(client, [5.0])

@@ -21,7 +21,7 @@ from linkwright.panels.terminal.feature import MAX_TERMINALS, TerminalFeature
 from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
 from tests.viewer.scene import World, open_world, page
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
@@ -45,7 +45,7 @@ class Reader:
 
     async def until(self, part: str) -> None:
         try:
-            await asyncio.wait_for(self._until(part), SECONDS)
+            await asyncio.wait_for(self._until(part), TIMEOUT_S)
         except asyncio.TimeoutError:
             pytest.fail(f"the terminal does not show {part!r}, but {self.text!r}")
 
@@ -240,7 +240,7 @@ async def test_programs_continue_without_page(tmp_path: Path) -> None:
         async with page(world.viewer) as client:
             reader = await open_terminal(client)
             await reader.type("seq 300000; touch finished\r")
-        await asyncio.to_thread(wait_until, (tmp_path / "finished").exists, SECONDS)
+        await asyncio.to_thread(wait_until, (tmp_path / "finished").exists, TIMEOUT_S)
         async with page(world.viewer) as client:
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
@@ -257,7 +257,7 @@ async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
         await client.send("close_terminal", terminal=1)
         while (await client.until("terminals"))["terminals"]:
             pass
-        await asyncio.to_thread(wait_until, lambda: not list(session_processes(leader)), SECONDS)
+        await asyncio.to_thread(wait_until, lambda: not list(session_processes(leader)), TIMEOUT_S)
 
 
 async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ import pytest
 from linkwright.panels.terminal.opening import open_pty
 from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.pty import Pty, TerminalProgram, TerminalSize
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
@@ -53,7 +53,7 @@ class Running:
         self._changed.set()
 
     async def until(self, holds: Callable[[], object]) -> None:
-        async with asyncio.timeout(SECONDS) if sys.version_info >= (3, 11) else _no_limit():
+        async with asyncio.timeout(TIMEOUT_S) if sys.version_info >= (3, 11) else _no_limit():
             while not holds():
                 self._changed.clear()
                 await self._changed.wait()
@@ -164,7 +164,7 @@ async def test_hang_up_ends_processes_that_ignore_sighup(tmp_path: Path) -> None
     async with running(script, tmp_path) as program:
         await program.prints("ready")
         leader = program.leader
-        wait_until(lambda: len(list(session_processes(leader))) >= 3, SECONDS)
+        wait_until(lambda: len(list(session_processes(leader))) >= 3, TIMEOUT_S)
         program.pty.hang_up()
         await asyncio.to_thread(program.pty.wait_until_ended, 0.1)
         assert list(session_processes(leader)) == []
@@ -176,7 +176,7 @@ async def test_hang_up_ends_stopped_program(tmp_path: Path) -> None:
         await program.prints("ready")
         leader = program.leader
         program.pty.hang_up()
-        await asyncio.to_thread(program.pty.wait_until_ended, SECONDS)
+        await asyncio.to_thread(program.pty.wait_until_ended, TIMEOUT_S)
         assert list(session_processes(leader)) == []
 
 

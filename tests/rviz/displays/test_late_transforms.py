@@ -16,8 +16,8 @@ from tests.rviz.clouds.test_clouds import cloud, scan, xyz
 from tests.skipping import skipping
 from tests.viewer.scene import World, open_world
 
-SECONDS = 10.0
-TF_PERIOD = 1 / 20
+DURATION_S = 10.0
+TF_PERIOD_S = 1 / 20
 
 SENSORS = {"LaserScan": 1 / 10, "PointCloud2": 1 / 15, "Odometry": 1 / 50}
 """Displays with the period of their messages, in seconds."""
@@ -66,7 +66,7 @@ def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[s
 
 
 async def call_periodically(period: float, call: Callable[[], object]) -> None:
-    for _ in range(round(SECONDS / period)):
+    for _ in range(round(DURATION_S / period)):
         call()
         await asyncio.sleep(period)
 
@@ -86,7 +86,7 @@ async def drive(world: World, tf_delay: float) -> None:
         asyncio.get_running_loop().call_later(tf_delay, world.move, poses)
 
     sensing = (call_periodically(period, partial(publish_sensor_message, cls)) for cls, period in SENSORS.items())
-    await asyncio.gather(*sensing, call_periodically(TF_PERIOD, move_later))
+    await asyncio.gather(*sensing, call_periodically(TF_PERIOD_S, move_later))
 
 
 @skipping

@@ -7,14 +7,14 @@ import pytest
 from linkwright.messages import get_service
 from linkwright.testing import Recording
 from tests.simulation.fluids.server import running_server, weightless_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import GROUND, box
 
 
 async def messages_after(server, graph, topic: str, seconds: float) -> list:
     """Return the messages of a topic within a time."""
     recording = Recording(graph, server.node, topic)
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
     return list(recording)
 
@@ -45,7 +45,7 @@ async def test_kinetic_energy_has_parts_of_translation_and_rotation():
     text = monitored("<kinetic_energy_threshold>1</kinetic_energy_threshold>")
     async with weightless_server(text) as (server, graph, _):
         server.simulation.set_model_velocity("crate", (3.0, 0.0, 0.0), (0.0, 0.0, 5.0))
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         server.simulation.set_model_velocity("crate", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         (message,) = await messages_after(server, graph, "/model/crate/kinetic_energy", 0.1)
         inertia = 2.0 * 0.36 / 6.0
@@ -85,7 +85,7 @@ async def test_service_enables_disabled_plugin():
         client = graph.create_node("operator").create_client("std_srvs/srv/SetBool", "/model/crate/touch/enable")
         future = client.call_async(get_service("std_srvs/srv/SetBool").Request(data=True))
         await graph.settle()
-        server.advance(SECOND // 100)
+        server.advance(SECOND_NS // 100)
         await graph.settle()
         assert future.result().success
         assert len(await messages_after(server, graph, "/model/crate/touch/touched", 1.0)) == 1

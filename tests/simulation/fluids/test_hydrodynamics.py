@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.messages import get_message
 from tests.simulation.fluids.server import weightless_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import box
 
 FLOAT = "std_msgs/msg/Float64"
@@ -40,7 +40,7 @@ def speed(server) -> float:
 async def test_body_reaches_speed_at_which_drag_equals_force(derivative, terminal_speed):
     async with weightless_server(body(hydrodynamics(derivative))) as (server, _, log):
         push(server, 100.0)
-        server.advance(30 * SECOND)
+        server.advance(30 * SECOND_NS)
         assert speed(server) == pytest.approx(terminal_speed, rel=0.005)
         assert not log
 
@@ -50,7 +50,7 @@ async def test_added_mass_slows_acceleration(added_mass):
     plugin = hydrodynamics(f"<xDotU>{-added_mass}</xDotU>")
     async with weightless_server(body(plugin), step=0.001) as (server, _, __):
         push(server, 100.0)
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         assert speed(server) == pytest.approx(2.0 * 100.0 / (100.0 + added_mass), rel=0.01)
 
 
@@ -59,7 +59,7 @@ async def test_effects_can_be_disabled(switch):
     plugin = hydrodynamics(f"<xDotU>-100</xDotU><{switch}>true</{switch}>")
     async with weightless_server(body(plugin), step=0.001) as (server, _, __):
         push(server, 100.0)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         mass = 100.0 if switch == "disable_added_mass" else 200.0
         assert speed(server) == pytest.approx(100.0 / mass, rel=0.01)
 
@@ -70,7 +70,7 @@ async def test_added_mass_turns_body_that_moves_obliquely_across_its_course():
         plugin = hydrodynamics(f"<xDotU>-10</xDotU><yDotV>-60</yDotV>{extra}")
         async with weightless_server(body(plugin), step=0.001) as (server, _, __):
             server.simulation.set_model_velocity("body", (1.0, 1.0, 0.0), (0.0, 0.0, 0.0))
-            server.advance(SECOND // 20)
+            server.advance(SECOND_NS // 20)
             (u, v, _), (_, _, turning) = server.simulation.link_velocity("body::link")
             assert turning * (100.0 / 6.0) / 0.05 == pytest.approx(expected * u * v, rel=0.05, abs=0.01)
 
@@ -78,17 +78,17 @@ async def test_added_mass_turns_body_that_moves_obliquely_across_its_course():
 async def test_body_drifts_with_current_of_parameter_and_topic():
     plugin = hydrodynamics("<xU>-200</xU><default_current>0.5 0 0</default_current><namespace>sub</namespace>")
     async with weightless_server(body(plugin)) as (server, graph, _):
-        server.advance(5 * SECOND)
+        server.advance(5 * SECOND_NS)
         assert speed(server) == pytest.approx(0.5, rel=0.01)
         node = graph.create_node("sea")
         type_name = "geometry_msgs/msg/Vector3"
         publisher = node.create_publisher(type_name, "/model/sub/ocean_current", 10)
         publisher.publish(get_message(type_name)(x=-0.25))
         await graph.settle()
-        server.advance(5 * SECOND)
+        server.advance(5 * SECOND_NS)
         assert speed(server) == pytest.approx(-0.25, rel=0.01)
         server.reset()
-        server.advance(5 * SECOND)
+        server.advance(5 * SECOND_NS)
         assert speed(server) == pytest.approx(0.5, rel=0.01)
 
 
@@ -121,7 +121,7 @@ async def command(graph, server, topic: str, value: float, seconds: float, type_
     publisher = node.create_publisher(type_name, topic, 10)
     publisher.publish(get_message(type_name)(data=value))
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
 
 
 async def test_boat_reaches_speed_at_which_drag_equals_thrust():
@@ -182,5 +182,5 @@ async def test_propeller_stops_when_time_restarts():
     async with weightless_server(boat("")) as (server, graph, _):
         await command(graph, server, f"{SHAFT}/cmd_thrust", 100.0, 5.0)
         server.reset()
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         assert speed(server) == pytest.approx(0.0, abs=1e-6)

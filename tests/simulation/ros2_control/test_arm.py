@@ -10,12 +10,12 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_action, get_service
 from tests.control.controllers.arm import SentGoal, trajectory
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 JOINTS = ("shoulder", "elbow")
 SUCCEEDED, CANCELED = 4, 5
-LENGTH, MASS = 0.5, 1.0
+ARM_LENGTH_M, ARM_MASS_KG = 0.5, 1.0
 """The length of each link in m, and its mass in kg."""
 
 
@@ -25,8 +25,9 @@ def model(write_parameters: Path) -> str:
     links = joints = ""
     for number, (name, parent) in enumerate(zip(JOINTS, ("world", "shoulder_link"), strict=True)):
         links += (
-            f'<link name="{name}_link"><pose>{number * LENGTH} 0 0 0 0 0</pose><inertial>'
-            f"<pose>{LENGTH / 2} 0 0 0 0 0</pose><mass>{MASS}</mass><inertia>{inertia}</inertia></inertial></link>"
+            f'<link name="{name}_link"><pose>{number * ARM_LENGTH_M} 0 0 0 0 0</pose><inertial>'
+            f"<pose>{ARM_LENGTH_M / 2} 0 0 0 0 0</pose><mass>{ARM_MASS_KG}</mass>"
+            f"<inertia>{inertia}</inertia></inertial></link>"
         )
         joints += (
             f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{name}_link</child><axis>'
@@ -99,11 +100,11 @@ class Arm:
 
     async def advance(self, seconds: float) -> None:
         """Advance the time in steps, and deliver messages between them."""
-        remaining = round(seconds * SECOND)
+        remaining = round(seconds * SECOND_NS)
         while True:
             await self.graph.settle()
-            self.server.advance(min(remaining, SECOND // 100))
-            remaining -= SECOND // 100
+            self.server.advance(min(remaining, SECOND_NS // 100))
+            remaining -= SECOND_NS // 100
             if remaining <= 0:
                 break
         await self.graph.settle()

@@ -15,12 +15,12 @@ from linkwright.control.odometry import yaw_of
 from linkwright.kinematics.planar import PlanarPose
 from tests.control.controllers.driving import stamped_twist
 from tests.simulation.ros2_control.test_plugin import PLUGINS, ControlledRobot
-from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
+from tests.simulation.test_ackermann import TRACK_WIDTH, WHEEL_RADIUS, WHEELBASE, car
 from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum
 from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND, mbot
 
-TIMEOUT = 0.2
+TIMEOUT_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ DIFFERENTIAL = Robot(
         "right_wheel_names": ["right_joint"],
         "wheel_separation": 0.38,
         "wheel_radius": 0.06,
-        "cmd_vel_timeout": TIMEOUT,
+        "cmd_vel_timeout": TIMEOUT_S,
         "publish_rate": 100.0,
         "linear": {"x": {"max_acceleration": 2.0}},
     },
@@ -89,10 +89,10 @@ ACKERMANN = Robot(
     {
         "traction_joints_names": _REAR,
         "steering_joints_names": _STEERING,
-        "wheelbase": BASE,
-        "traction_track_width": TRACK,
-        "traction_wheels_radius": RADIUS,
-        "reference_timeout": TIMEOUT,
+        "wheelbase": WHEELBASE,
+        "traction_track_width": TRACK_WIDTH,
+        "traction_wheels_radius": WHEEL_RADIUS,
+        "reference_timeout": TIMEOUT_S,
         "position_feedback": True,
     },
 )
@@ -110,10 +110,10 @@ MECANUM = Robot(
     {
         **{f"{name}_wheel_command_joint_name": f"{corner}_joint" for name, corner in _CORNERS.items()},
         "kinematics": {
-            "wheels_radius": RADIUS,
+            "wheels_radius": WHEEL_RADIUS,
             "sum_of_robot_center_projection_on_X_Y_axis": (LENGTH + WIDTH) / 2.0,
         },
-        "reference_timeout": TIMEOUT,
+        "reference_timeout": TIMEOUT_S,
     },
 )
 ALL = pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"])
@@ -175,7 +175,7 @@ async def test_odometry_matches_truth_over_five_meters(robot, tmp_path):
         await drive.drive(5.0, 1.0)
         await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
-        assert odometry.x == pytest.approx(5.0 + TIMEOUT / 2.0, abs=0.02)
+        assert odometry.x == pytest.approx(5.0 + TIMEOUT_S / 2.0, abs=0.02)
         assert (truth.x, truth.y) == pytest.approx((odometry.x, 0.0), abs=0.05)
 
 
@@ -185,7 +185,7 @@ async def test_odometry_matches_truth_on_arc(robot, tmp_path):
         await drive.drive(6.0, 0.4, 0.3)
         await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
-        assert odometry.yaw == pytest.approx(0.3 * (6.0 + TIMEOUT / 2.0), abs=0.05)
+        assert odometry.yaw == pytest.approx(0.3 * (6.0 + TIMEOUT_S / 2.0), abs=0.05)
         assert (odometry.x, odometry.y, odometry.yaw) == pytest.approx((truth.x, truth.y, truth.yaw), abs=0.04)
 
 

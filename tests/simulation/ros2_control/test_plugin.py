@@ -9,7 +9,7 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_service
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, model
 
 FILE = """
@@ -64,7 +64,7 @@ class ControlledRobot:
 
     async def advance(self, seconds: float) -> None:
         await self.graph.settle()
-        self.server.advance(round(seconds * SECOND))
+        self.server.advance(round(seconds * SECOND_NS))
         await self.graph.settle()
 
     async def call(self, service: str, manager: str = "/controller_manager", **fields):

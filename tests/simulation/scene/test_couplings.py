@@ -8,7 +8,7 @@ import pytest
 
 from tests.simulation.worlds import box, make_simulation
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 BODY = "<inertial><mass>1</mass><inertia><ixx>.1</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial>"
 
 
@@ -35,7 +35,7 @@ def gears(ratio: float, axis: str = "1 0 0", gearbox_first: bool = False) -> str
 def test_gearbox_child_turns_by_negative_ratio(axis, ratio, gearbox_first):
     simulation = make_simulation(gears(-1.5, axis, gearbox_first))
     simulation.push_joint("m::a_axle", 1.0)
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     angle, _ = simulation.joint_state("m::a_axle")
     assert angle > 0.1
     assert simulation.joint_state("m::b_axle")[0] == pytest.approx(ratio * angle, abs=1e-3)
@@ -48,7 +48,7 @@ def test_screw_joint_moves_by_pitch_per_revolution():
     )
     simulation = make_simulation(screw, gravity="0 0 0")
     simulation.push_joint("m::screw", 1.0)
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     angle, _ = simulation.joint_state("m::screw")
     assert angle > 1.0
     assert simulation.link_pose("m::nut")[2] == pytest.approx(0.01 * angle / tau, abs=1e-4)
@@ -58,9 +58,9 @@ def test_kinematic_model_keeps_pose_and_pushes_others():
     shape = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
     lift = f'<model name="lift"><pose>0 0 0.5 0 0 0</pose><link name="l"><kinematic>1</kinematic>{shape}</link></model>'
     simulation = make_simulation(lift, box("crate", pose="0 0 1.5 0 0 0"))
-    simulation.advance(SECOND // 10)
+    simulation.advance(SECOND_NS // 10)
     assert simulation.model_pose("lift")[:3] == pytest.approx((0, 0, 0.5))
     simulation.set_model_pose("lift", (0.0, 0.0, 0.52, 0.0, 0.0, 0.0, 1.0))
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     assert simulation.model_pose("lift")[:3] == pytest.approx((0, 0, 0.52))
     assert simulation.model_pose("crate")[2] == pytest.approx(1.52, abs=5e-3)

@@ -12,7 +12,7 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.simulation.plugins.sensors.hector_errors import ErrorModel
 from linkwright.testing import Recording
 from tests.simulation.fluids.server import running_server, weightless_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import GROUND, box
 
 
@@ -24,7 +24,7 @@ def craft(kind: str, parameters: str = "", pose: str = "0 0 0.1 0 0 0") -> str:
 async def messages_of(running, topic: str, seconds: float = 1.0) -> list:
     server, graph, log = running
     recording = Recording(graph, server.node, topic)
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
     assert not log
     return list(recording)
@@ -60,7 +60,7 @@ async def test_imu_has_noise_offset_and_bias_that_calibration_removes():
         client = graph.create_node("operator").create_client("std_srvs/srv/Empty", "/raw/calibrate")
         client.call_async(get_service("std_srvs/srv/Empty").Request())
         await graph.settle()
-        server.advance(SECOND // 100)
+        server.advance(SECOND_NS // 100)
         *_, bias = await messages_of(running, "/raw/bias", 0.1)
         assert components(bias.angular_velocity) == (0.0, 0.0, 0.0)
     async with running_server(GROUND, craft("imu", parameters)) as running:

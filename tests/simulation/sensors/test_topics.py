@@ -15,7 +15,7 @@ from linkwright.testing import Recording
 from tests.simulation.sensors.rooms import block
 from tests.simulation.worlds import GROUND, box, make_simulation
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 WALL = block("wall", "2.5 0 0 0 0 0", "1 20 20")
 RAYS = (
     "<scan><horizontal><samples>3</samples><min_angle>-1.5707963267948966</min_angle><max_angle>1.5707963267948966"
@@ -52,7 +52,7 @@ async def running_server(*parts: str):
     await graph.close()
 
 
-async def last_messages(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND // 10) -> list:
+async def last_messages(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND_NS // 10) -> list:
     """Advance the simulation, and return the last message of each topic."""
     recordings = [Recording(graph, server.node, topic) for topic in topics]
     server.advance(duration)
@@ -65,7 +65,7 @@ async def test_classic_ray_sensor_publishes_scan():
     text = robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so", ros)))
     async with running_server(WALL, text) as (server, graph, log):
         (scan,) = await last_messages(server, graph, "/scan")
-        assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND // 10)
+        assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND_NS // 10)
         assert scan.header.frame_id == "head"
         assert list(scan.ranges) == [inf, 2.0, inf]
         assert (scan.angle_min, scan.angle_increment) == (pytest.approx(-pi / 2), pytest.approx(pi / 2))
@@ -78,9 +78,9 @@ async def test_classic_ray_sensor_publishes_scan():
 async def test_ray_sensor_does_not_publish_without_subscribers():
     text = robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
     async with running_server(WALL, text) as (server, graph, _):
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         recording = Recording(graph, server.node, "/driver/out")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 10
 
@@ -97,7 +97,7 @@ async def test_displayed_rays_and_scan_share_one_measurement(visualize: str, top
         measurements = []
         measure = lidar.lidar.measure
         lidar.lidar.measure = lambda: measurements.append(None) or measure()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert not measurements
         rays, scan = await last_messages(server, graph, topic, "/scan")
         assert len(measurements) == 1
@@ -250,7 +250,7 @@ async def test_imu_plugins_publish_gravity_and_noise(library: str | None, text: 
         graph,
         log,
     ):
-        (message,) = await last_messages(server, graph, topic, duration=SECOND)
+        (message,) = await last_messages(server, graph, topic, duration=SECOND_NS)
         assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
         assert message.angular_velocity_covariance[8] == pytest.approx(0.01)
         assert message.angular_velocity.z != 0
@@ -268,7 +268,7 @@ async def test_ros_1_imu_plugin_names_its_link():
         graph,
         log,
     ):
-        (message,) = await last_messages(server, graph, "/imu", duration=SECOND)
+        (message,) = await last_messages(server, graph, "/imu", duration=SECOND_NS)
         assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
         assert not log
 
@@ -278,10 +278,10 @@ async def test_gz_contacts_are_published_while_touching():
     text = box("crate", "0 0 0.7 0 0 0", "1 1 1", 2.0).replace("</link>", f"{element}</link>")
     async with running_server(GROUND, text) as (server, graph, log):
         recording = Recording(graph, server.node, "/touched")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         assert len(recording) == 0
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         await graph.settle()
         (contact,) = recording.last.contacts
         assert (contact.collision1.name, contact.collision1.type) == ("crate::link::collision", 5)
@@ -303,7 +303,7 @@ async def test_gz_altimeter_and_air_pressure_are_published():
     )
     text = box("crate", "0 0 50 0 0 0", "1 1 1", 2.0).replace("</link>", "".join(sensors) + "</link>")
     async with running_server(text) as (server, graph, log):
-        height, air = await last_messages(server, graph, "/height", "/air", duration=SECOND)
+        height, air = await last_messages(server, graph, "/height", "/air", duration=SECOND_NS)
         assert (height.vertical_position, height.vertical_velocity) == pytest.approx((-4.905, -9.81), abs=0.01)
         assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/sensor")
         assert air.fluid_pressure == pytest.approx(99606.0, abs=20.0)
@@ -320,7 +320,7 @@ async def test_bumper_publishes_contacts():
         graph,
         log,
     ):
-        (message,) = await last_messages(server, graph, "/bumper_states", duration=SECOND)
+        (message,) = await last_messages(server, graph, "/bumper_states", duration=SECOND_NS)
         (state,) = message.states
         assert message.header.frame_id == "world"
         assert state.collision2_name == "ground::link::collision"
@@ -434,13 +434,13 @@ async def test_triggered_camera_waits_for_trigger():
     element = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
     async with running_server(WALL, robot_with(sensor("camera", CAMERA + element))) as (server, graph, _):
         recording = Recording(graph, server.node, "/sensor/image_raw")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 0
         trigger = server.node.create_publisher("std_msgs/msg/Empty", "/sensor/image_trigger", 1)
         trigger.publish(get_message("std_msgs/msg/Empty")())
         await graph.settle()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 1
 

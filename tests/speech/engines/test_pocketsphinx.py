@@ -18,14 +18,14 @@ from tests.speech.voices import WORDS, say
 
 pocketsphinx = pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
-FRAME = 480
-SPEECH, QUIET = np.full(FRAME, 1_000, np.int16), np.zeros(FRAME, np.int16)
+FRAME_SAMPLES = 480
+SPEECH, QUIET = np.full(FRAME_SAMPLES, 1_000, np.int16), np.zeros(FRAME_SAMPLES, np.int16)
 
 
 class Endpointer:
     """A fake that takes loud frames for speech; one quiet frame ends it."""
 
-    frame_bytes = 2 * FRAME
+    frame_bytes = 2 * FRAME_SAMPLES
 
     def __init__(self, sample_rate):
         assert sample_rate == 16_000

@@ -13,7 +13,7 @@ from tests.speech.nodes.fakes import CommanderHarness
 from tests.speech.voices import WORDS, say
 from tests.waiting import eventually
 
-AFTER = 0.8
+PAUSE_S = 0.8
 """The seconds of silence before and after a word."""
 
 
@@ -54,7 +54,7 @@ async def wait_for_commands(robot, *commands):
 
 
 def spoken_word(name):
-    return say(WORDS[name], speed=1.04, pitch=122, level=2000, silence=AFTER, seed=21)
+    return say(WORDS[name], speed=1.04, pitch=122, level=2000, silence=PAUSE_S, seed=21)
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,7 @@ async def test_stop_is_executed_within_300_ms_of_word(robot):
     await play(robot, spoken_word("forward"))
     await wait_for_commands(robot, "forward")
     sound = spoken_word("stop")
-    end = len(sound) - int(AFTER * RATE)
+    end = len(sound) - int(PAUSE_S * RATE)
     await play(robot, sound[: end + int(0.3 * RATE)])  # the word is recognized before its silence ends
     await wait_for_commands(robot, "forward", "stop")
     assert robot.speed == (0.0, 0.0, 0.0)
@@ -88,7 +88,7 @@ async def test_noise_and_unknown_words_do_not_drive_robot(robot):
     await play(robot, np.concatenate((noise.astype(np.int16), np.zeros(RATE, np.int16))))
     for phones in ("mumi", "se.pifu", "moramifu"):
         before = len(robot.texts_by_topic["text"])
-        await play(robot, say(phones, silence=AFTER, seed=23))
+        await play(robot, say(phones, silence=PAUSE_S, seed=23))
         await eventually(
             lambda count=before: len(robot.texts_by_topic["text"]) > count, what=lambda: robot.texts_by_topic
         )

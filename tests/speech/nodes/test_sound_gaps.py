@@ -7,14 +7,14 @@ import numpy as np
 from linkwright.speech.nodes.sound_gaps import SampleStamps, SoundGaps
 from linkwright.speech.sound.samples import BLOCK
 
-SECOND = 10**9
-LENGTH = SECOND // 10
+SECOND_NS = 10**9
+LENGTH = SECOND_NS // 10
 
 
 def stamps_of(arrivals):
     """Return the stamps of blocks of a tenth of a second that arrived at these seconds."""
     stamps = SampleStamps()
-    return [stamps.stamp(BLOCK, round(arrival * SECOND)) for arrival in arrivals]
+    return [stamps.stamp(BLOCK, round(arrival * SECOND_NS)) for arrival in arrivals]
 
 
 def gaps_of(stamps):
@@ -36,7 +36,7 @@ def test_stalled_source_is_not_a_gap():
 
 def test_stamps_follow_the_clock():
     stamps = stamps_of(10.0 + 0.1005 * np.arange(2000))  # the clock of the microphone is slow by 0.5 %
-    assert abs(stamps[-1] - (10.0 + 0.1005 * 1999 - 0.1) * SECOND) < 0.01 * SECOND
+    assert abs(stamps[-1] - (10.0 + 0.1005 * 1999 - 0.1) * SECOND_NS) < 0.01 * SECOND_NS
 
 
 def test_lost_blocks_are_reported_as_gap():
@@ -47,13 +47,13 @@ def test_lost_blocks_are_reported_as_gap():
 
 def test_restarted_stream_has_no_gap():
     stamps = SampleStamps()
-    first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND)) for index in range(10)]
+    first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND_NS)) for index in range(10)]
     stamps.restart()
-    assert stamps.stamp(BLOCK, 15 * SECOND) == 15 * SECOND - LENGTH
+    assert stamps.stamp(BLOCK, 15 * SECOND_NS) == 15 * SECOND_NS - LENGTH
     gaps = SoundGaps()
     assert not any(gaps.measure_gap(stamp, BLOCK) for stamp in first)
     gaps.restart()
-    assert gaps.measure_gap(15 * SECOND, BLOCK) == 0.0
+    assert gaps.measure_gap(15 * SECOND_NS, BLOCK) == 0.0
 
 
 def test_loss_reported_by_source_is_a_gap():
@@ -61,7 +61,7 @@ def test_loss_reported_by_source_is_a_gap():
     for index in range(100):
         lost_seconds = 0.4 if index >= 10 and index % 10 == 0 else 0.0
         gap_list.append(
-            gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND), lost_seconds), BLOCK)
+            gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND_NS), lost_seconds), BLOCK)
         )
     assert [number for number, gap in enumerate(gap_list) if gap] == list(range(10, 100, 10))
     assert np.allclose([gap for gap in gap_list if gap], 0.4, atol=0.005)
@@ -70,7 +70,9 @@ def test_loss_reported_by_source_is_a_gap():
 def test_small_losses_are_accumulated_and_hide_no_large_one():
     stamps, gaps = SampleStamps(), SoundGaps()
     losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
-    result = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND), losses.get(index, 0.0)) for index in range(30)]
+    result = [
+        stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND_NS), losses.get(index, 0.0)) for index in range(30)
+    ]
     gap_list = [gaps.measure_gap(stamp, BLOCK) for stamp in result]
     assert [number for number, gap in enumerate(gap_list) if gap] == [12, 13]
     assert np.allclose([gap_list[12], gap_list[13]], [0.08, 0.5], atol=0.005)
@@ -80,28 +82,28 @@ def test_small_jumps_of_arrival_stamps_are_not_gaps():
     gaps = SoundGaps()
     delays = [0, 0, 0, 0, 0.03, 0, 0.04, 0, 0, 0, 0, 0.03, 0, 0.04, 0]
     assert not any(
-        gaps.measure_gap(round((10.0 + 0.1 * index + delay) * SECOND), BLOCK) for index, delay in enumerate(delays)
+        gaps.measure_gap(round((10.0 + 0.1 * index + delay) * SECOND_NS), BLOCK) for index, delay in enumerate(delays)
     )
 
 
 def test_stamps_do_not_run_ahead_of_clock_for_any_reported_loss():
     stamps = SampleStamps()
     for index in range(20):
-        time_ns = round((10.0 + 0.1 * index) * SECOND)
-        assert stamps.stamp(BLOCK, time_ns, 1000.0) <= time_ns + 2 * SECOND
+        time_ns = round((10.0 + 0.1 * index) * SECOND_NS)
+        assert stamps.stamp(BLOCK, time_ns, 1000.0) <= time_ns + 2 * SECOND_NS
 
 
 def test_gap_is_reported_immediately_after_restart():
     gaps = SoundGaps()
-    assert not any(gaps.measure_gap(round((10.0 + 0.1 * index) * SECOND), BLOCK) for index in range(5))
+    assert not any(gaps.measure_gap(round((10.0 + 0.1 * index) * SECOND_NS), BLOCK) for index in range(5))
     gaps.restart()
-    assert gaps.measure_gap(20 * SECOND, BLOCK) == 0.0
-    assert gaps.measure_gap(20 * SECOND + 3 * LENGTH, BLOCK) == 0.2
+    assert gaps.measure_gap(20 * SECOND_NS, BLOCK) == 0.0
+    assert gaps.measure_gap(20 * SECOND_NS + 3 * LENGTH, BLOCK) == 0.2
 
 
 def test_arrival_stamps_with_jitter_have_no_gaps():
     delays = np.random.default_rng(2).uniform(0, 0.2, 200)
-    assert not any(gaps_of([round((10.0 + 0.1 * index + delays[index]) * SECOND) for index in range(200)]))
+    assert not any(gaps_of([round((10.0 + 0.1 * index + delays[index]) * SECOND_NS) for index in range(200)]))
 
 
 def test_clock_jumps_and_stalls_are_not_gaps():

@@ -24,7 +24,7 @@ from linkwright.vision.nodes.detector import (
     Yolov5RosNode,
 )
 from tests.vision.detectors.networks import columns
-from tests.waiting import SECONDS, eventually, is_waiting, wait_until
+from tests.waiting import TIMEOUT_S, eventually, is_waiting, wait_until
 
 
 @pytest.fixture
@@ -381,7 +381,7 @@ class Slow:
 
     def __call__(self, model, options):
         self.begun.set()
-        assert self.proceed.wait(SECONDS)
+        assert self.proceed.wait(TIMEOUT_S)
         return self._make(model, options)
 
 

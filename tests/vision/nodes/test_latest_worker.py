@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 from linkwright.vision.nodes.latest_worker import LatestWorker
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 
 def test_busy_worker_keeps_only_latest_item():
@@ -14,12 +14,12 @@ def test_busy_worker_keeps_only_latest_item():
 
     def work(item: int) -> None:
         has_begun.set()
-        assert may_continue.wait(SECONDS)
+        assert may_continue.wait(TIMEOUT_S)
         processed.append(item)
 
     worker = LatestWorker(lambda: work, "slow")
     worker.offer(0)
-    assert has_begun.wait(SECONDS)
+    assert has_begun.wait(TIMEOUT_S)
     for item in range(1, 50):
         worker.offer(item)
     may_continue.set()
@@ -34,17 +34,17 @@ def test_close_waits_for_current_item_and_drops_rest():
 
     def work(item: int) -> None:
         has_begun.set()
-        assert may_continue.wait(SECONDS)
+        assert may_continue.wait(TIMEOUT_S)
         processed.append(item)
 
     worker = LatestWorker(lambda: work, "slow")
     worker.offer(0)
-    assert has_begun.wait(SECONDS)
+    assert has_begun.wait(TIMEOUT_S)
     worker.offer(1)
     closing = threading.Thread(target=worker.close)
     closing.start()
     wait_until(lambda: not worker.has_pending_item)
     may_continue.set()
-    closing.join(SECONDS)
+    closing.join(TIMEOUT_S)
     worker.offer(2)
     assert processed == [0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.messages import get_service
-from tests.vision.nodes.seeking_robot import RADIUS, SeekingRobot
+from tests.vision.nodes.seeking_robot import BALL_RADIUS_M, SeekingRobot
 
 pytest.importorskip("mujoco")
 
@@ -22,7 +22,7 @@ def test_seeker_goes_to_ball(tmp_path, ball):
             "I see the ball and am driving to it.",
             "I am at the ball.",
         ]
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.08)
         place = test.robot_pose()
         test.advance(2.0)
         assert test.robot_pose()[:2] == pytest.approx(place[:2], abs=0.02), "the robot stands still"
@@ -39,7 +39,7 @@ def test_seeker_goes_to_red_ball_seen_by_camera(tmp_path):
     with SeekingRobot(tmp_path, (1.6, -0.9), images=True, laser=True) as test:
         test.tell("/vision/go_to", "红色的球")
         assert test.advance_until_said("我到红色的球这里了")
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.08)
         describe_sightings = test.call("/vision/describe", TRIGGER.Request())
         assert describe_sightings.message.startswith("I see a red ball 0.")
         assert describe_sightings.message.endswith(" m ahead.")
@@ -69,11 +69,11 @@ def test_seeker_follows_moving_ball_until_stopped(tmp_path):
     with SeekingRobot(tmp_path, (1.5, 0.0)) as test:
         test.tell("/vision/follow", "ball")
         test.advance(5.0)
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.1)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.1)
         test.delete("ball")
         test.put_ball(2.0, 0.3)
         test.advance(5.0)
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.1)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.1)
         test.tell_to_stop()
         test.advance(0.5)
         assert test.spoken()[-1] == "I am stopping."

@@ -26,7 +26,7 @@ from tests.wire.zenoh.hosts import (
 )
 
 NAME = "cloud.example.com"
-COUNT = 400
+MESSAGE_COUNT = 400
 
 pytestmark = pytest.mark.slow
 
@@ -121,27 +121,29 @@ def start_publishing(robot: Program, desk: Program, topic: str, qos: str, **opti
 def test_reliable_topics_survive_link_failure_and_packet_loss(site, robot, desk):
     topics = {"/robot1/everything": "everything", "/robot1/lasting": "lasting"}
     for topic, qos in topics.items():
-        start_publishing(robot, desk, topic, qos, count=COUNT, rate=40.0, size=100)
-    desk.ask_until(lambda numbers: len(numbers) > COUNT // 10, "received", "/robot1/everything")
+        start_publishing(robot, desk, topic, qos, count=MESSAGE_COUNT, rate=40.0, size=100)
+    desk.ask_until(lambda numbers: len(numbers) > MESSAGE_COUNT // 10, "received", "/robot1/everything")
     site.hosts.link(is_up=False)
-    count = robot.ask_until(lambda count: count > COUNT // 2, "published_count", "/robot1/lasting")
+    count = robot.ask_until(lambda count: count > MESSAGE_COUNT // 2, "published_count", "/robot1/lasting")
     assert len(desk.ask("received", "/robot1/lasting")) < count
     site.hosts.link(is_up=True)
     lossy = ("-m", "statistic", "--mode", "random", "--probability", "0.05", "-j", "DROP")
     site.hosts.run(GATEWAY, "iptables", "-A", "FORWARD", *lossy)
     for topic in topics:
-        numbers = desk.ask_until(lambda numbers: len(numbers) >= COUNT, "received", topic, seconds=180)
-        assert numbers == list(range(COUNT))
+        numbers = desk.ask_until(lambda numbers: len(numbers) >= MESSAGE_COUNT, "received", topic, seconds=180)
+        assert numbers == list(range(MESSAGE_COUNT))
 
 
 def test_latched_topic_catches_up_after_reconnect(site, robot, desk):
-    start_publishing(robot, desk, "/robot1/lasting", "lasting", count=COUNT, rate=40.0, size=100)
-    desk.ask_until(lambda numbers: len(numbers) > COUNT // 10, "received", "/robot1/lasting")
+    start_publishing(robot, desk, "/robot1/lasting", "lasting", count=MESSAGE_COUNT, rate=40.0, size=100)
+    desk.ask_until(lambda numbers: len(numbers) > MESSAGE_COUNT // 10, "received", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "down")  # the gateway then drops its NAT table
-    robot.ask_until(lambda count: count > COUNT // 2, "published_count", "/robot1/lasting")
+    robot.ask_until(lambda count: count > MESSAGE_COUNT // 2, "published_count", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "up")
-    numbers = desk.ask_until(lambda numbers: len(set(numbers)) >= COUNT, "received", "/robot1/lasting", seconds=180)
-    assert sorted(set(numbers)) == list(range(COUNT))
+    numbers = desk.ask_until(
+        lambda numbers: len(set(numbers)) >= MESSAGE_COUNT, "received", "/robot1/lasting", seconds=180
+    )
+    assert sorted(set(numbers)) == list(range(MESSAGE_COUNT))
 
 
 def test_desk_receives_only_subscribed_and_publishes_only_allowed_topics(site, robot, desk):

@@ -15,8 +15,8 @@ from linkwright.messages import String, get_service
 from linkwright.wire.zenoh.settings import OVERRIDES
 
 PYTHON = os.environ.get("LINKWRIGHT_ZENOH_SDK_PYTHON", "")
-CALLS = 1000
-CLIENTS = 4
+CALL_COUNT = 1000
+CLIENT_COUNT = 4
 EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 SetBool = get_service("std_srvs/srv/SetBool")
 
@@ -85,14 +85,14 @@ def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
 
     process.node.create_service(SetBool, "flip", flip)
     sdk_peer = peer()
-    message = ask_while_spinning(process, lambda: sdk_peer.ask("call", CLIENTS, CALLS // CLIENTS))
-    assert message == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
-    assert len(served) == CALLS
+    message = ask_while_spinning(process, lambda: sdk_peer.ask("call", CLIENT_COUNT, CALL_COUNT // CLIENT_COUNT))
+    assert message == [[f"{number % 2 == 0} flipped" for number in range(CALL_COUNT // CLIENT_COUNT)]] * CLIENT_COUNT
+    assert len(served) == CALL_COUNT
 
 
 def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes, peer):
     process = processes("ours")
-    clients = [process.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
+    clients = [process.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENT_COUNT)]
     sdk_peer = peer()
     process.spin_until(lambda: all(client.service_is_ready() for client in clients))
     answers = [[] for _ in clients]
@@ -103,10 +103,10 @@ def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes,
             if waiting[which] is not None and waiting[which].done():
                 answers[which].append(waiting[which].result().success)
                 waiting[which] = None
-            if waiting[which] is None and len(answers[which]) < CALLS // CLIENTS:
+            if waiting[which] is None and len(answers[which]) < CALL_COUNT // CLIENT_COUNT:
                 waiting[which] = client.call_async(SetBool.Request(data=len(answers[which]) % 2 == 1))
-        return all(len(answer) == CALLS // CLIENTS for answer in answers)
+        return all(len(answer) == CALL_COUNT // CLIENT_COUNT for answer in answers)
 
     process.spin_until(all_answered, 300)
-    assert answers == [[number % 2 == 0 for number in range(CALLS // CLIENTS)]] * CLIENTS
-    assert sdk_peer.ask("request_count") == CALLS
+    assert answers == [[number % 2 == 0 for number in range(CALL_COUNT // CLIENT_COUNT)]] * CLIENT_COUNT
+    assert sdk_peer.ask("request_count") == CALL_COUNT

@@ -18,8 +18,8 @@ from tests.wire.test_services import flip
 
 AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
 SetBool = get_service("std_srvs/srv/SetBool")
-CALLS = 1000
-AT_ONCE = 3
+CALL_COUNT = 1000
+MAX_PENDING_CALLS = 3
 """The simultaneous requests of each client; their total is below the queue size of a service."""
 
 
@@ -44,8 +44,8 @@ def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
     wrong_responses = []
 
     def call(process, caller, offset):
-        for first in range(0, CALLS, AT_ONCE):
-            numbers = range(first, min(first + AT_ONCE, CALLS))
+        for first in range(0, CALL_COUNT, MAX_PENDING_CALLS):
+            numbers = range(first, min(first + MAX_PENDING_CALLS, CALL_COUNT))
             futures = [caller.call_async(AddTwoInts.Request(a=offset, b=number)) for number in numbers]
             process.spin_until(lambda futures=futures: all(future.done() for future in futures))
             sums = [future.result().sum for future in futures]

@@ -24,7 +24,7 @@ from linkwright.wire.zenoh.session import build_config, open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from linkwright.wire.zenoh.topics import OutgoingTopic
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 from tests.wire.programs import linkwright
 from tests.wire.test_topics import LASTING
 
@@ -72,7 +72,7 @@ def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
         history_key = f"{latched.token.data_key}/@adv/**"
         wait_until(lambda: list(theirs.liveliness().get(history_key)))
         listener = theirs.declare_subscriber(other.token.data_key)
-        assert result.wait(SECONDS)
+        assert result.wait(TIMEOUT_S)
         start = time.monotonic()
         latched.close()
         assert time.monotonic() - start < 5.0
@@ -98,7 +98,7 @@ def test_discovery_does_not_settle_before_first_link(processes, monkeypatch):
     a = processes("a")
     assert not a.transport.wait_for_discovery(2 * transport.SETTLE_TIME_S)
     processes("b")
-    assert a.transport.wait_for_discovery(SECONDS)
+    assert a.transport.wait_for_discovery(TIMEOUT_S)
     assert "b" in a.node.get_node_names()
 
 
