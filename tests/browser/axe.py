@@ -73,7 +73,7 @@ _RUN = """async ([selector, worst]) => {
 }"""
 
 
-def violations(page: Page, selector: str | None = None) -> list[str]:
+def find_violations(page: Page, selector: str | None = None) -> list[str]:
     """Return the violations in the page or in one of its elements, in dark and in light colors.
 
     Raises:

@@ -38,7 +38,7 @@ _PREFERENCES = {
 }
 
 
-def find() -> str | None:
+def find_firefox() -> str | None:
     """Return Firefox's program: LINKWRIGHT_FIREFOX, or one on the PATH."""
     names = ("firefox-esr", "firefox")
     return os.environ.get("LINKWRIGHT_FIREFOX") or next(filter(None, map(shutil.which, names)), None)
@@ -58,7 +58,7 @@ def launch(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
             environment["DISPLAY"] = stack.enter_context(_display(folder / "xvfb.log"))
         text = "".join(f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in _PREFERENCES.items())
         (folder / "user.js").write_text(text, encoding="utf-8")
-        command = [find() or "firefox", "--no-remote", "--profile", str(folder), "--remote-debugging-port=0"]
+        command = [find_firefox() or "firefox", "--no-remote", "--profile", str(folder), "--remote-debugging-port=0"]
         process = _run_logged([*command, *(["--headless"] if headless else [])], environment, folder / "firefox.log")
         address = stack.enter_context(process)(r"WebDriver BiDi listening on (\S+)\n")
         yield stack.enter_context(contextlib.closing(Firefox(address)))

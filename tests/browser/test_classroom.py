@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.learning.course import find_course
-from tests.browser.axe import violations
+from tests.browser.axe import find_violations
 from tests.browser.conftest import until, wait_until_equal
 
 pytestmark = [
@@ -226,7 +226,7 @@ def test_tables_keep_words_whole_and_scroll_in_their_own_box(start, open_page, w
             page.get_by_role("group", name=name).wait_for()
             assert page.evaluate(DIVIDED_WORDS) == [], (width, button)
             assert page.locator(".lesson-body").evaluate("body => body.scrollWidth <= body.clientWidth")
-    assert violations(page) == []
+    assert find_violations(page) == []
     table = page.get_by_role("group", name="Table")
     table.evaluate("box => (box.style.width = '200px')")
     table.focus()
@@ -247,4 +247,4 @@ def test_classroom_fits_small_screen_and_passes_axe(start, open_page, workspace)
     wait_until_equal(lambda: page.locator(".outline-step").count(), 2)
     page.locator(".outline-step").last.click()
     until(page, "lw.panels.lesson.step === '01-one-link/mass'")
-    assert violations(page) == []
+    assert find_violations(page) == []

@@ -33,7 +33,7 @@ OPEN_ALL = """async () => {
   document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape", bubbles: true }));
 }"""
 
-CUT = """async () => {
+FIND_CUT_TEXTS = """async () => {
   const frames = () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
   const pen = document.createElement("canvas").getContext("2d");
   const room = (element, style) => element.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
@@ -91,7 +91,7 @@ def test_control_texts_are_not_clipped(start: Start, browser: Browser, tmp_path,
         page.wait_for_function(f"document.querySelector('.dock').clientWidth === {width}")
         page.evaluate(OPEN_ALL)
         until(page, "lw.settled")
-        cut_texts[width] = page.evaluate(CUT)
+        cut_texts[width] = page.evaluate(FIND_CUT_TEXTS)
     context.close()
     assert not any(cut_texts.values()), cut_texts
 

@@ -30,7 +30,7 @@ def open_panel(page, name):
     page.locator(".panel-tab", has_text=name).first.click()
 
 
-def marks(page, panel):
+def marked_elements(page, panel):
     return [(mark["from"], mark["to"]) for mark in state(page, f"panels.source.{panel}.marks")]
 
 
@@ -39,8 +39,8 @@ def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
     page.locator('[data-link="fore"]').click()
     until(page, "lw.selected?.link === 'fore' && lw.panels.source.origin.marks.length === 1")
     assert state(page, "panels.source.origin.file") == str(arm.parent / "segment.xacro")
-    assert marks(page, "origin") == [SEGMENT_LINK]
-    ((first, last),) = marks(page, "expanded")
+    assert marked_elements(page, "origin") == [SEGMENT_LINK]
+    ((first, last),) = marked_elements(page, "expanded")
     assert page.locator(f'.source-line.focus[data-line="{first}"]').first.inner_text().endswith('<link name="fore">')
     assert last - first > 10
 
@@ -49,13 +49,13 @@ def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
     assert call.inner_text() == "macro segment, called at …/arm.xacro:14"
     call.click()
     until(page, f"lw.panels.source.origin.file === {str(arm)!r}")
-    assert marks(page, "origin") == [(14, 14)]
+    assert marked_elements(page, "origin") == [(14, 14)]
 
     # A joint is a separate element; the scene selects the link that it moves.
     page.locator('.joint-of[data-joint="upper_joint"]').click()
     until(page, "lw.description.focus?.kind === 'joint' && lw.selected?.link === 'upper'")
     until(page, "lw.panels.source.origin.file.endsWith('segment.xacro') && lw.panels.source.origin.marks.length === 1")
-    assert marks(page, "origin") == [SEGMENT_JOINT]
+    assert marked_elements(page, "origin") == [SEGMENT_JOINT]
 
     # A line of a macro belongs to one element of each call; each click selects the next of these elements.
     line = page.locator('.source-pane >> nth=0 >> .source-line[data-line="20"]')

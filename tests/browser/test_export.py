@@ -11,9 +11,9 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from tests.browser.conftest import state, until, wait_until_equal
-from tests.browser.golden import link, mesh, robot_of
+from tests.browser.golden import link_element, mesh_visual, robot_of
 from tests.browser.live import configuration
-from tests.browser.mesh_writers import dae, obj, png, stl_binary
+from tests.browser.mesh_writers import make_png, write_dae, write_obj, write_stl_binary
 from tests.panels.export.robots import GRIPPER
 from tests.panels.export.test_glb import textured_dae
 
@@ -62,7 +62,7 @@ def open_file(browser):
     assert errors == []
 
 
-def export(target: Path, model: Path, *values: str) -> None:
+def export_page(target: Path, model: Path, *values: str) -> None:
     subprocess.run([sys.executable, "-m", "linkwright", "export", str(target), str(model), *values], check=True)
 
 
@@ -83,14 +83,16 @@ def assert_alike(first: dict, second: dict) -> None:
 
 
 def robot_with_meshes(folder: Path) -> str:
-    (folder / "skin.png").write_bytes(png(255, 255, 0))
+    (folder / "skin.png").write_bytes(make_png(255, 255, 0))
     (folder / "skin.dae").write_text(textured_dae())
-    (folder / "inches.dae").write_bytes(dae(unit=0.0254, diffuse="<color>0 0 1 1</color>"))
-    (folder / "own.obj").write_bytes(obj("own.mtl", "paint"))
+    (folder / "inches.dae").write_bytes(write_dae(unit=0.0254, diffuse="<color>0 0 1 1</color>"))
+    (folder / "own.obj").write_bytes(write_obj("own.mtl", "paint"))
     (folder / "own.mtl").write_text("newmtl paint\nKd 1 0.5 0\n")
-    (folder / "plain.stl").write_bytes(stl_binary())
+    (folder / "plain.stl").write_bytes(write_stl_binary())
     return robot_of(
-        "".join(link(path.stem, mesh(path, "")) for path in sorted(folder.iterdir()) if path.suffix in MESHES)
+        "".join(
+            link_element(path.stem, mesh_visual(path, "")) for path in sorted(folder.iterdir()) if path.suffix in MESHES
+        )
     )
 
 
@@ -102,7 +104,7 @@ def test_exported_page_draws_the_same_as_viewer(live, open_page, open_file, tmp_
     folder.mkdir()
     text = robot_with_meshes(folder)
     (tmp_path / "robot.urdf").write_text(text)
-    export(tmp_path / "robot.html", tmp_path / "robot.urdf")
+    export_page(tmp_path / "robot.html", tmp_path / "robot.urdf")
     viewer = live(ROBOT)
     for name in ("skin", "inches", "own", "plain"):
         viewer.place(name, 0.0, 0.0, 0.0)
@@ -114,7 +116,7 @@ def test_exported_page_draws_the_same_as_viewer(live, open_page, open_file, tmp_
 
 def test_exported_sliders_move_joints_and_mimic_joints(open_file, tmp_path):
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
-    export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
+    export_page(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
     page = open_file(tmp_path / "gripper.html")
     assert state(page, "joints") == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45})
     slider = page.get_by_role("slider", name="open", exact=True)
@@ -135,7 +137,7 @@ def test_exported_sliders_move_joints_and_mimic_joints(open_file, tmp_path):
 
 def test_exported_page_has_visual_switches_views_and_translation(open_file, tmp_path):
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
-    export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
+    export_page(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
     page = open_file(tmp_path / "gripper.html")
     page.get_by_label("Collision").check()
     page.get_by_label("Visual").uncheck()
@@ -158,24 +160,24 @@ WHEELED = """\
 """
 
 
-def grid(page) -> dict:
+def grid_drawing(page) -> dict:
     return next(display for display in state(page, "displays") if display["class"].endswith("/Grid"))["drawn"]
 
 
 def test_exported_grid_is_at_wheel_contact_height(open_file, tmp_path):
     (tmp_path / "cart.urdf").write_text(WHEELED)
-    export(tmp_path / "cart.html", tmp_path / "cart.urdf")
+    export_page(tmp_path / "cart.html", tmp_path / "cart.urdf")
     page = open_file(tmp_path / "cart.html")
-    wait_until_equal(lambda: grid(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
+    wait_until_equal(lambda: grid_drawing(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
 
 
 def test_exported_grid_fits_small_mesh_robot(open_file, tmp_path):
-    (tmp_path / "small.stl").write_bytes(stl_binary())
+    (tmp_path / "small.stl").write_bytes(write_stl_binary())
     visual = '<visual><geometry><mesh filename="small.stl" scale="0.1 0.1 0.1"/></geometry></visual>'
     (tmp_path / "small.urdf").write_text(f'<robot name="small"><link name="base">{visual}</link></robot>')
-    export(tmp_path / "small.html", tmp_path / "small.urdf")
+    export_page(tmp_path / "small.html", tmp_path / "small.urdf")
     page = open_file(tmp_path / "small.html")
-    wait_until_equal(lambda: grid(page)["cell"], pytest.approx(0.01))
+    wait_until_equal(lambda: grid_drawing(page)["cell"], pytest.approx(0.01))
 
 
 def open_gripper(live, open_page):
@@ -187,14 +189,14 @@ def open_gripper(live, open_page):
     return viewer, open_page(viewer)
 
 
-def share(page, entry: str) -> None:
+def open_share_menu_entry(page, entry: str) -> None:
     page.get_by_role("button", name="Share", exact=True).click()
     page.get_by_role("menuitem", name=entry, exact=True).click()
 
 
 def save_from_menu(page, entry: str, folder: Path) -> Path:
     with page.expect_download() as download:
-        share(page, entry)
+        open_share_menu_entry(page, entry)
     path = folder / download.value.suggested_filename
     download.value.save_as(path)
     return path
@@ -216,7 +218,7 @@ def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
     path = save_from_menu(page, "Export glb…", tmp_path)
     visuals = drawn_visuals(page)
     viewer = live(ROBOT)
-    robot = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
+    robot = f'<robot name="again"><link name="base">{mesh_visual(path, "")}</link></robot>'
     viewer.publish("/robot_description", String(data=robot), DESCRIPTION_QOS)
     (drawn_model,) = drawn_visuals(open_page(viewer))["base"]
     bounds = [shape["bounds"] for shapes in visuals.values() for shape in shapes]
@@ -254,7 +256,7 @@ def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):
         colors = {pixel for _, pixel in image.convert("RGB").resize((200, 150)).getcolors(30_000)}
     assert len(colors) > 3
     assert page.locator(".canvas-box canvas").bounding_box() == canvas
-    share(page, "Record a video")
+    open_share_menu_entry(page, "Record a video")
     until(page, "document.querySelector('.recorder:not([hidden])') !== null")
     for step in range(10):
         frame_count = state(page, "framesDrawn")

@@ -41,7 +41,7 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Firefox]]:
     with ExitStack() as stack:
 
         def run(*, headless: bool) -> Firefox:
-            skip_reason = "no Firefox" if firefox.find() is None else None
+            skip_reason = "no Firefox" if firefox.find_firefox() is None else None
             if not skip_reason and not headless and not firefox.can_show_windows():
                 skip_reason = "no display and no Xvfb for Firefox's WebGL"
             if skip_reason and "CI" in os.environ:

@@ -91,7 +91,7 @@ def drawings(page) -> dict[str, dict]:
     return {display["name"]: display["drawn"] for display in state(page, "displays")}
 
 
-def size(drawing: dict) -> list[float]:
+def drawn_size(drawing: dict) -> list[float]:
     return [high - low for low, high in zip(drawing["bounds"]["min"], drawing["bounds"]["max"], strict=True)]
 
 
@@ -105,7 +105,7 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     assert drawing["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
     assert drawing["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
     assert drawing["Guess"]["bounds"]["max"] == pytest.approx([1.3, 3.001, 2.001], abs=0.02)
-    assert (drawing["Cloud"]["arrows"], size(drawing["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
+    assert (drawing["Cloud"]["arrows"], drawn_size(drawing["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
     assert drawing["Particles"]["bounds"]["max"] == pytest.approx([1.16, 0.032, 3.5], abs=1e-3)
     assert (drawing["Way"]["arrows"], drawing["Way"]["contents"]) == (3, 3)
     assert (drawing["Plan"]["points"], drawing["Plan"]["axes"], drawing["Plan"]["wide"]) == (4, 4, True)
@@ -118,8 +118,8 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     assert drawing["Speed"]["bounds"]["max"][0] == pytest.approx(2.6, abs=1e-3)
     assert drawing["Push"]["bounds"]["max"][2] == pytest.approx(3.6, abs=1e-3)
     assert (drawing["Torque"]["rings"], drawing["Torque"]["efforts"]) == (1, [10])
-    assert size(drawing["Torque"])[1] < 0.2 < size(drawing["Torque"])[0]
-    assert size(drawing["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
+    assert drawn_size(drawing["Torque"])[1] < 0.2 < drawn_size(drawing["Torque"])[0]
+    assert drawn_size(drawing["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
     assert drawing["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
     wait_until_equal(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
 
@@ -196,7 +196,7 @@ ROWS = configuration(
 )
 
 
-def row(page, key: str):
+def locate_row(page, key: str):
     return page.locator(f'.row[data-key="{key}"]')
 
 
@@ -214,26 +214,26 @@ def test_tree_rows_of_frames_links_and_joints_match_scene(live, open_page):
     identities = {display.config.name: display.id for display in viewer.viewer.displays}
     tf, model = identities["Frames"], identities["Robot"]
     for key in (f"{tf}", f"{tf}/Frames", f"{tf}/Frames/tip"):
-        row(page, key).locator(".twist").click()
+        locate_row(page, key).locator(".twist").click()
 
     def value(key: str) -> str:
-        result: str = row(page, key).locator(".row-value").inner_text()
+        result: str = locate_row(page, key).locator(".row-value").inner_text()
         return result
 
     wait_until_equal(lambda: value(f"{tf}/Frames/tip#Parent"), "base")
     wait_until_equal(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1")
     viewer.place("tip", 0.0, 0.0, 1.5)
     wait_until_equal(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1.5")
-    row(page, tf).locator(".twist").click()
-    top = row(page, f"{model}/Links")
+    locate_row(page, tf).locator(".twist").click()
+    top = locate_row(page, f"{model}/Links")
     assert "Link/Joint Tree" in top.inner_text()
     top.locator(".twist").click()
-    row(page, f"{model}/Links/tip").wait_for()
+    locate_row(page, f"{model}/Links/tip").wait_for()
     names = page.locator(".row-title").all_inner_texts()
     tree = names[names.index("Link/Joint Tree") :]
     assert [name for name in tree if name in ("base", "lift", "tip")] == ["base", "lift", "tip"]
     assert "Lower Limit" not in tree
-    row(page, f"{model}/Joints/lift#Details").locator(".twist").click()
+    locate_row(page, f"{model}/Joints/lift#Details").locator(".twist").click()
     wait_until_equal(lambda: value(f"{model}/Joints/lift#Lower Limit"), "-1")
     wait_until_equal(lambda: value(f"{model}/Joints/lift#Joint Axis"), "0; 1; 0")
     wait_until_equal(lambda: value(f"{model}/Links/tip#Position"), "0; 0; 1.5")

@@ -33,7 +33,7 @@ def drag(page, dx, dy, button="left"):
     page.mouse.up(button=button)
 
 
-def robot_model(page):
+def robot_model_drawing(page):
     return next(display for display in state(page, "displays") if display["name"] == "RobotModel")
 
 

@@ -17,7 +17,7 @@ def page(start, open_page, tmp_path):
     return open_page(start("view", str(write_arm(tmp_path))))
 
 
-def move(page, joint, text):
+def move_joint(page, joint, text):
     field = page.locator(f'[data-joint="{joint}"] input[type=text]')
     field.fill(text)
     field.press("Enter")
@@ -28,7 +28,7 @@ def test_units_limits_and_mimic_joints_are_shown(page):
     assert "-0.500 rad" in row.inner_text()
     page.get_by_role("button", name="deg").first.click()
     wait_until_equal(lambda: "-28.6 deg" in row.inner_text(), True)
-    move(page, "fore_joint", "90")
+    move_joint(page, "fore_joint", "90")
     until(page, f"Math.abs(lw.joints.fore_joint - {math.pi / 2}) < 1e-3")
     follower = page.locator('.joint[data-joint="finger_joint"]')
     assert "-0.5 × slide_joint + 0.01 m" in follower.inner_text()
@@ -57,7 +57,7 @@ def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
 
 
 def test_saved_poses_are_recalled_and_survive_reload(page):
-    move(page, "upper_joint", "0.5")
+    move_joint(page, "upper_joint", "0.5")
     until(page, "lw.joints.upper_joint === 0.5")
     page.get_by_label("Name of the pose").fill("bent")
     page.get_by_label("Name of the pose").press("Enter")

@@ -43,7 +43,7 @@ MOTION_PLANNING = configuration(
 )
 
 
-def kitchen(*, wrist: float = 0.2):
+def make_kitchen_scene(*, wrist: float = 0.2):
     """Return a scene with a table, a ball, a cone, an octomap, and a cup in the hand."""
     robot = state(shoulder=0.3, wrist=wrist)
     cylinder = primitive(SolidPrimitive.CYLINDER, 0.3, 0.08)
@@ -74,7 +74,7 @@ def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
     viewer = live(MOTION_PLANNING)
     viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)
-    viewer.publish("/monitored_planning_scene", kitchen())
+    viewer.publish("/monitored_planning_scene", make_kitchen_scene())
     markers = "lw.displays[1]?.drawn?.markers"
     until(
         page,

@@ -83,13 +83,13 @@ def test_jupyterlab_cell_shows_robot_with_working_slider(browser, lab):
     page.keyboard.press("Shift+Enter")
     frame = page.wait_for_selector("iframe[title=arm]").content_frame()
     wait_until_equal(lambda: frame.evaluate("() => window.linkwright?.ready === true"), True)
-    level = highest(frame)
+    level = highest_point(frame)
     frame.get_by_role("slider").first.fill("0.5")
-    wait_until_equal(lambda: highest(frame) > level + 0.01, True)
+    wait_until_equal(lambda: highest_point(frame) > level + 0.01, True)
     page.close()
 
 
-def highest(frame) -> float:
+def highest_point(frame) -> float:
     """Return the height of the highest point of the tip, in meters."""
     robot = next(display for display in state(frame, "displays") if display["class"].endswith("RobotModel"))
     (visual,) = robot["drawn"]["links"]["tip"]["visuals"]

@@ -48,7 +48,7 @@ TELL = """() => {
 }"""
 
 
-def overlapping(boxes: dict[str, list[float]]) -> list[str]:
+def find_overlaps(boxes: dict[str, list[float]]) -> list[str]:
     """Return the pairs of boxes that overlap by more than an edge, and the boxes outside the scene."""
     left, top, right, bottom = boxes.pop(".scene-box")
     overlaps = [
@@ -72,19 +72,19 @@ def test_scene_overlays_do_not_overlap(start, open_page, tmp_path):
     page.get_by_role("treeitem").filter(has_text="Links").last.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
     page.locator(".selection-card").wait_for()
-    unfold(page)
+    unfold_overlays(page)
     page.locator(".inspect > button").click()  # the clicks on rows have closed the card of Inspect
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
         page.evaluate(TELL)
-        wait_until_equal(lambda: overlapping(page.evaluate(BOXES, list(OVERLAYS))), [])
+        wait_until_equal(lambda: find_overlaps(page.evaluate(BOXES, list(OVERLAYS))), [])
         until(page, "lw.settled")
         keep(page, f"overlays-{width}x{height}")
 
 
-def unfold(page) -> None:
+def unfold_overlays(page) -> None:
     if page.locator(".selection-card .fold").get_attribute("aria-expanded") == "false":
         page.locator(".selection-card .fold").click()
 

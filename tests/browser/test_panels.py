@@ -36,13 +36,13 @@ def wait_for_panels(page, *names: str) -> None:
     )
 
 
-def close(page, name: str) -> None:
+def close_panel(page, name: str) -> None:
     tab = page.locator(".panel-tab", has_text=name)
     tab.locator(".tab-title").click()
     tab.locator(".tab-close").click()
 
 
-def choose(page, name: str) -> None:
+def choose_menu_entry(page, name: str) -> None:
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
 
@@ -94,14 +94,14 @@ def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_
     wait_for_panels(page, "Displays", "Views")
     neighbor = open_page(viewer, wait=False)
     wait_for_panels(neighbor, "Displays", "Views")
-    close(page, "Views")
-    choose(page, "Selection")
+    close_panel(page, "Views")
+    choose_menu_entry(page, "Selection")
     wait_for_panels(page, "Displays", "Selection")
     page.locator(".file-name .unsaved").wait_for()
-    choose(page, "Plots")  # RViz does not have this panel
+    choose_menu_entry(page, "Plots")  # RViz does not have this panel
     page.reload()
     page.locator(".panel-tab", has_text="Plots").wait_for()
-    close(page, "Plots")
+    close_panel(page, "Plots")
     wait_for_panels(page, "Displays", "Selection")
     # Panels of other pages stay, and a new browser starts with the file's panels.
     wait_for_panels(neighbor, "Displays", "Views")
@@ -125,9 +125,9 @@ def test_reopened_diagnostics_tab_shows_count(start, open_page, tmp_path: Path):
     page = open_page(start("view", str(tmp_path / "broken.urdf")), wait=False)
     page.get_by_role("tab", name="Diagnostics (").wait_for()
     text = page.locator(".panel-tab", has_text="Diagnostics").inner_text()
-    close(page, "Diagnostics")
+    close_panel(page, "Diagnostics")
     page.get_by_role("tab", name="Diagnostics").wait_for(state="detached")
-    choose(page, "Diagnostics")
+    choose_menu_entry(page, "Diagnostics")
     page.get_by_role("tab", name=text.strip(), exact=True).wait_for()
 
 

@@ -26,12 +26,12 @@ BACKGROUND = (48, 48, 48)
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 
 
-def entry(cls: str, **properties: Any) -> dict[str, Any]:
+def display_entry(cls: str, **properties: Any) -> dict[str, Any]:
     properties_by_name = {name.replace("_", " "): value for name, value in properties.items()}
     return {"Class": f"rviz_default_plugins/{cls}", "Name": cls, "Enabled": True, **properties_by_name}
 
 
-def config(*displays: dict[str, Any]) -> str:
+def make_config(*displays: dict[str, Any]) -> str:
     view = {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": PIXELS_PER_METER}
     options = {"Fixed Frame": "base", "Background Color": "48; 48; 48", "Frame Rate": 30}
     manager = {"Displays": list(displays), "Global Options": options, "Views": {"Current": view, "Saved": None}}
@@ -62,7 +62,7 @@ def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object
 
 def test_point_cloud_is_drawn_in_all_styles(live, open_page):
     size = {"Size (m)": 0.6, "Size (Pixels)": 30}
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
+    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
     page = open_page(viewer, wait=False)
     viewer.place("lidar", 0.0, 1.0, 0.0)
     viewer.publish("/cloud", three_points(frame="lidar"))
@@ -86,7 +86,7 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
 
 
 def test_clicked_point_is_selected_and_shows_fields(live, open_page):
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
+    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
     until(page, "lw.displays[0]?.drawn?.points === 3")
@@ -107,7 +107,7 @@ def test_clicked_point_is_selected_and_shows_fields(live, open_page):
 
 
 def test_large_cloud_is_updated_continuously(live, open_page):
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
+    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
     page = open_page(viewer, wait=False)
     rng = np.random.default_rng(0)
     array = np.zeros(100_000, xyz([]).dtype)
@@ -127,11 +127,11 @@ def test_large_cloud_is_updated_continuously(live, open_page):
 
 def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     displays = (
-        entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
-        entry("Temperature", Topic={"Value": "/temperature"}, **{"Size (m)": 0.5}),
-        entry("GridCells", Topic={"Value": "/cells"}),
+        display_entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
+        display_entry("Temperature", Topic={"Value": "/temperature"}, **{"Size (m)": 0.5}),
+        display_entry("GridCells", Topic={"Value": "/cells"}),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("thermometer", 0.0, -2.0, 0.0)
     viewer.publish("/scan", placed(scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
@@ -147,10 +147,10 @@ def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
 
 def test_map_is_drawn_and_updated(live, open_page):
     displays = (
-        entry("Map", Topic={"Value": "/map"}, Alpha=1.0),
-        entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2}),
+        display_entry("Map", Topic={"Value": "/map"}, Alpha=1.0),
+        display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2}),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
@@ -177,10 +177,10 @@ def test_map_is_drawn_and_updated(live, open_page):
 
 def test_map_drawn_behind_does_not_hide_points(live, open_page):
     displays = (
-        entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.4}),
-        entry("Map", Topic={"Value": "/map"}, Alpha=1.0, Draw_Behind=True),
+        display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.4}),
+        display_entry("Map", Topic={"Value": "/map"}, Alpha=1.0, Draw_Behind=True),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("cellar", 0.0, 0.0, -3.0)
     viewer.publish("/map", grid())
@@ -194,7 +194,7 @@ def test_map_drawn_behind_does_not_hide_points(live, open_page):
 
 
 def test_image_has_its_own_panel(live, open_page):
-    viewer = live(config(entry("Image", Topic={"Value": "/image"})))
+    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     page.get_by_text("No image").wait_for()
     pixels = np.zeros((20, 40, 3), np.uint8)
@@ -223,7 +223,7 @@ def test_image_has_its_own_panel(live, open_page):
     assert page.locator(".image-panel").count() == 1
 
 
-def layers(page: Any) -> list[str]:
+def compositing_layers(page: Any) -> list[str]:
     """Return the browser's compositing layers of the page, by the attributes of their elements."""
     tools = page.context.new_cdp_session(page)
     messages: list[list[dict[str, Any]]] = []
@@ -238,18 +238,19 @@ def layers(page: Any) -> list[str]:
 
 
 def test_image_is_composited_without_repainting_page(live, open_page):
-    viewer = live(config(entry("Image", Topic={"Value": "/image"})))
+    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
     own_layers = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
     wait_until_equal(
-        lambda: [any(layer.startswith(prefix) for layer in layers(page)) for prefix in own_layers], [True, True, True]
+        lambda: [any(layer.startswith(prefix) for layer in compositing_layers(page)) for prefix in own_layers],
+        [True, True, True],
     )
 
 
 def test_compressed_image_is_decoded_by_browser(live, open_page):
-    viewer = live(config(entry("Image", Topic={"Value": "/image/compressed"})))
+    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image/compressed"})))
     page = open_page(viewer, wait=False)
     # An image of one blue pixel.
     data = page.evaluate(
@@ -264,10 +265,10 @@ def test_compressed_image_is_decoded_by_browser(live, open_page):
 
 def test_camera_display_shows_scene_over_image(live, open_page):
     displays = (
-        entry("Camera", Topic={"Value": "/camera/image"}, **{"Image Rendering": "background"}),
-        entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
+        display_entry("Camera", Topic={"Value": "/camera/image"}, **{"Image Rendering": "background"}),
+        display_entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     # The camera is at the origin and looks along x: its z axis points ahead, and its x axis to the right.
     viewer.place("camera", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
@@ -292,7 +293,7 @@ def test_camera_display_shows_scene_over_image(live, open_page):
 
 def test_depth_image_is_drawn_as_points(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
-    viewer = live(config(entry("DepthCloud", **topics)))
+    viewer = live(make_config(display_entry("DepthCloud", **topics)))
     page = open_page(viewer, wait=False)
     viewer.publish("/depth/camera_info", camera_info(2, 1))
     viewer.publish("/color/image", placed(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
@@ -307,7 +308,10 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
     hints = {"Depth Map Transport Hint": "theora", "Color Transport Hint": "compressed"}
     viewer = live(
-        config(entry("DepthCloud", **topics, **hints), entry("Image", Topic={"Value": "/depth/image/compressedDepth"}))
+        make_config(
+            display_entry("DepthCloud", **topics, **hints),
+            display_entry("Image", Topic={"Value": "/depth/image/compressedDepth"}),
+        )
     )
     page = open_page(viewer, wait=False)
     assert "choose raw, compressed" in viewer.status("DepthCloud")["Depth Map Transport Hint"][1]
@@ -323,7 +327,11 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
 
 
 def test_idle_displays_are_not_redrawn(live, open_page):
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}), entry("Map", Topic={"Value": "/map"})))
+    viewer = live(
+        make_config(
+            display_entry("PointCloud2", Topic={"Value": "/cloud"}), display_entry("Map", Topic={"Value": "/map"})
+        )
+    )
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
     viewer.publish("/map", grid())

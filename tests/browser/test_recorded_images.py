@@ -58,19 +58,19 @@ def open_recording(start, open_page, tmp_path: Path) -> Callable[..., Page]:
     return show
 
 
-def place(page: Page, selector: str) -> dict[str, float]:
+def bounding_box(page: Page, selector: str) -> dict[str, float]:
     box = page.locator(selector).first.bounding_box()
     assert box is not None
     return dict(box)
 
 
-def boxes(page: Page) -> list[dict[str, float]]:
+def image_boxes(page: Page) -> list[dict[str, float]]:
     """Return the visible images."""
     rectangles = (panel.bounding_box() for panel in page.locator(".image-panel").all())
     return [dict(box) for box in rectangles if box is not None]
 
 
-def switch(page: Page, name: str) -> None:
+def toggle_display(page: Page, name: str) -> None:
     """Toggle a display."""
     page.get_by_role("treeitem").filter(has_text=name).get_by_role("checkbox").first.click()
 
@@ -79,21 +79,21 @@ def switch(page: Page, name: str) -> None:
 def test_recording_with_only_images_shows_them_in_place_of_scene(open_recording, size):
     page = open_recording(*size, scans=False)
     wait_until_equal(
-        lambda: place(page, ".image-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0
+        lambda: bounding_box(page, ".image-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0
     )
     page.locator(".dv-tab", has_text="3D View").dispatch_event("pointerdown")
     page.locator(".canvas-box").wait_for()
     page.locator(".dv-tab", has_text="raw").dispatch_event("pointerdown")
-    switch(page, "front")
-    wait_until_equal(lambda: len({box["y"] for box in boxes(page)}) == 1 and len(boxes(page)), 2)
-    left_box, right_box = sorted(boxes(page), key=lambda box: box["x"])
+    toggle_display(page, "front")
+    wait_until_equal(lambda: len({box["y"] for box in image_boxes(page)}) == 1 and len(image_boxes(page)), 2)
+    left_box, right_box = sorted(image_boxes(page), key=lambda box: box["x"])
     assert left_box["x"] + left_box["width"] <= right_box["x"], "the images are side by side"
 
 
 def test_image_is_beside_scene_in_small_window(open_recording):
     page = open_recording(800, 600, scans=True)
-    wait_until_equal(lambda: place(page, ".canvas-box")["width"] > 400, True)
-    scene, panel = place(page, ".canvas-box"), place(page, ".image-panel")
+    wait_until_equal(lambda: bounding_box(page, ".canvas-box")["width"] > 400, True)
+    scene, panel = bounding_box(page, ".canvas-box"), bounding_box(page, ".image-panel")
     assert scene["x"] + scene["width"] <= panel["x"]
     assert panel["width"] > 300
     assert panel["height"] > 200
@@ -102,6 +102,6 @@ def test_image_is_beside_scene_in_small_window(open_recording):
 
 def test_unreadable_image_shows_reason(open_recording):
     page = open_recording(1280, 800, scans=False)
-    switch(page, "cut/compressed")
+    toggle_display(page, "cut/compressed")
     notice = page.locator(".image-notice", has_text="The image cannot be read")
     notice.get_by_text("The image file is truncated").wait_for()

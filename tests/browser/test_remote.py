@@ -34,7 +34,7 @@ SENSES = configuration(
 )
 
 
-def noise(width: int, height: int) -> Any:
+def make_noise_image(width: int, height: int) -> Any:
     """Return an image of squares of random colors: hard to compress, also at the size of its panel."""
     message = image(width, height)
     squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE_PX, width // _SQUARE_PX, 3), np.uint8)
@@ -77,7 +77,7 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     page = open_page(SlowAddress(viewer.run(line.__aenter__)), wait=False)
     until(page, "lw.displays.length === 2")
 
-    heavy_messages = cloud(50_000), noise(1280, 720)
+    heavy_messages = cloud(50_000), make_noise_image(1280, 720)
     facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:

@@ -58,7 +58,7 @@ RECTANGLE = """([selector, part, text]) => {
 """Find and measure an element in one call, because a resized window creates all elements again."""
 
 
-def box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:
+def visible_box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:
     """Return the box of the first visible element, or of the first with a part that contains a text."""
     rectangle: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part_selector, text]).json_value()
     return rectangle
@@ -66,27 +66,27 @@ def box(page: Page, selector: str, *, part_selector: str | None = None, text: st
 
 def group_box(page: Page, name: str) -> dict[str, float]:
     """Return the box of the group with a panel's tab."""
-    return box(page, ".dv-groupview", part_selector=".panel-tab", text=name)
+    return visible_box(page, ".dv-groupview", part_selector=".panel-tab", text=name)
 
 
 @pytest.mark.parametrize(("width", "height"), [(500, 800), (900, 700)])
 def test_scene_is_above_panels_up_to_tablet_width(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
     width_beside = group_box(page, "Front")["width"] if width >= 600 else 0
-    wait_until_equal(lambda: box(page, ".canvas-box")["width"] + width_beside, pytest.approx(width, abs=8))
-    canvas = box(page, ".canvas-box")
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["width"] + width_beside, pytest.approx(width, abs=8))
+    canvas = visible_box(page, ".canvas-box")
     assert canvas["height"] > 300
     page.locator(".dv-tab", has_text="Displays").first.dispatch_event("pointerdown")
     page.wait_for_selector(".displays-panel")
-    wait_until_equal(lambda: box(page, ".displays-panel")["width"], width)
-    assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
+    wait_until_equal(lambda: visible_box(page, ".displays-panel")["width"], width)
+    assert visible_box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
 
 
 def test_images_are_beside_scene_in_wide_enough_window(open_window_of_size):
     page = open_window_of_size(800, 600)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
     wait_until_equal(lambda: group_box(page, "Front") == group_box(page, "Back"), True)
-    scene, images = box(page, ".canvas-box"), group_box(page, "Front")
+    scene, images = visible_box(page, ".canvas-box"), group_box(page, "Front")
     assert scene["x"] + scene["width"] <= images["x"]
     assert scene["width"] > images["width"] > 300
 
@@ -101,11 +101,11 @@ def test_displays_tab_is_in_front_of_images_when_panels_share_space(open_window_
 def test_displays_filter_does_not_overlap_tabs(open_window_of_size):
     page = open_window_of_size(800, 600)
     tabs, filter_ = (
-        box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"),
-        box(page, ".displays-panel .search-box"),
+        visible_box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"),
+        visible_box(page, ".displays-panel .search-box"),
     )
     assert filter_["y"] >= tabs["y"] + tabs["height"]
-    assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "the filter is beside the buttons"
+    assert filter_["y"] < visible_box(page, ".displays-panel .toolbar")["y"] + 30, "the filter is beside the buttons"
 
 
 @pytest.mark.parametrize("width", [360, 390])
@@ -152,19 +152,19 @@ def test_phone_view_fits_map_until_user_moves_camera(browser, live):
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])
 def test_open_panels_have_enough_space(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
-    foot = box(page, ".foot")
+    foot = visible_box(page, ".foot")
     assert foot["height"] < 45, "the last minutes and the status share one line"
-    canvas = box(page, ".canvas-box")
+    canvas = visible_box(page, ".canvas-box")
     assert canvas["y"] + canvas["height"] > foot["y"] - 10, "the time fields are folded"
     page.get_by_role("button", name="Time", exact=True).click()
     page.wait_for_function("() => document.querySelector('.time-panel').offsetHeight < 45")
 
     def has_room() -> dict[str, bool]:
-        reset = box(page, ".time-panel button:last-child")
+        reset = visible_box(page, ".time-panel button:last-child")
         return {
-            "scene": box(page, ".canvas-box")["width"] > width / 3,
-            "tree": box(page, ".displays-panel .tree")["height"] > 100,
-            "time": box(page, ".time-panel")["height"] > 25,
+            "scene": visible_box(page, ".canvas-box")["width"] > width / 3,
+            "tree": visible_box(page, ".displays-panel .tree")["height"] > 100,
+            "time": visible_box(page, ".time-panel")["height"] > 25,
             "reset": reset["x"] + reset["width"] <= width,
         }
 
@@ -174,7 +174,7 @@ def test_open_panels_have_enough_space(open_window_of_size, width, height):
 @pytest.mark.parametrize(("width", "height"), [(844, 390), (667, 375), (932, 430)])
 def test_panels_are_beside_scene_on_phone_in_landscape(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
-    canvas = box(page, ".canvas-box")
+    canvas = visible_box(page, ".canvas-box")
     assert canvas["height"] > 0.65 * height
     assert 0.5 * width < canvas["width"] < 0.7 * width
     assert group_box(page, "Front") == group_box(page, "Displays") == group_box(page, "Views")
@@ -182,18 +182,18 @@ def test_panels_are_beside_scene_on_phone_in_landscape(open_window_of_size, widt
     assert displays["x"] >= canvas["x"] + canvas["width"]
     assert displays["x"] + displays["width"] <= width + 1
     page.set_viewport_size({"width": height, "height": width})
-    wait_until_equal(lambda: box(page, ".canvas-box")["width"], height)
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["width"], height)
     page.set_viewport_size({"width": width, "height": height})
-    wait_until_equal(lambda: box(page, ".canvas-box")["height"] > 0.65 * height, True)
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["height"] > 0.65 * height, True)
 
 
 def test_window_resized_narrow_and_wide_keeps_its_panels(open_window_of_size):
     page = open_window_of_size(1280, 800)
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Topics", exact=True).click()
-    wait_until_equal(lambda: group_box(page, "Topics")["y"] > box(page, ".canvas-box")["y"] + 100, True)
+    wait_until_equal(lambda: group_box(page, "Topics")["y"] > visible_box(page, ".canvas-box")["y"] + 100, True)
     page.set_viewport_size({"width": 500, "height": 800})
-    wait_until_equal(lambda: box(page, ".canvas-box")["width"], 500)
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["width"], 500)
     wait_until_equal(lambda: group_box(page, "Topics") == group_box(page, "Displays"), True)
     page.set_viewport_size({"width": 1280, "height": 800})
     wait_until_equal(lambda: group_box(page, "Topics")["x"] > group_box(page, "Displays")["x"], True)

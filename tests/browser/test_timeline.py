@@ -35,7 +35,7 @@ def write_recording(folder: Path) -> Path:
             batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
             writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
             writer.write("/second", stamp, serialize(FLOAT(data=float(second))))
-            message = image("rgb8", 4, 4, bytes(color(second)) * 16)
+            message = image("rgb8", 4, 4, bytes(color_of_second(second)) * 16)
             message.header.frame_id = "tip"
             writer.write("/camera", stamp, serialize(message))
             if tenth % 10 == 9:
@@ -44,7 +44,7 @@ def write_recording(folder: Path) -> Path:
     return file
 
 
-def color(second: int) -> tuple[int, int, int]:
+def color_of_second(second: int) -> tuple[int, int, int]:
     return 8 * second, 0, 255 - 8 * second
 
 
@@ -59,11 +59,11 @@ def page(start, open_page, tmp_path: Path) -> Page:
     return recording_page
 
 
-def position(page: Page) -> float:
+def shown_position(page: Page) -> float:
     return float(state(page, "timeline")["position"])
 
 
-def track(page: Page) -> dict[str, float]:
+def track_box(page: Page) -> dict[str, float]:
     box = page.get_by_role("slider", name="Time in the recording").bounding_box()
     assert box is not None
     return dict(box)
@@ -71,7 +71,7 @@ def track(page: Page) -> dict[str, float]:
 
 def seek(page: Page, seconds: float) -> None:
     """Click on a time of the timeline."""
-    box = track(page)
+    box = track_box(page)
     page.mouse.click(box["x"] + box["width"] * seconds / LENGTH_S, box["y"] + box["height"] / 2)
     until(page, f"Math.abs(lw.timeline.position - {seconds}) < {LENGTH_S / box['width'] + 0.01}")
 
@@ -80,7 +80,7 @@ def wait_for_second(page: Page, second: int) -> None:
     """Wait until the frame and the image belong to a second."""
     until(page, f"Math.abs(lw.frames.tip?.position[0] - {second}) < 1e-6")
     corner = "window.linkwright.displays.find(({ drawn }) => drawn?.width === 4).drawn.corner"
-    wait_until_equal(lambda: page.evaluate(corner), [*color(second), 255])
+    wait_until_equal(lambda: page.evaluate(corner), [*color_of_second(second), 255])
 
 
 def test_seek_shows_frames_and_images_of_that_time(page: Page):
@@ -92,7 +92,7 @@ def test_seek_shows_frames_and_images_of_that_time(page: Page):
 
 
 def test_dragging_slider_updates_scene_before_release(page: Page):
-    box = track(page)
+    box = track_box(page)
     middle = box["y"] + box["height"] / 2
     page.mouse.move(box["x"] + 0.1 * box["width"], middle)
     page.mouse.down()
@@ -101,7 +101,7 @@ def test_dragging_slider_updates_scene_before_release(page: Page):
     wait_for_second(page, 25)
     page.mouse.move(box["x"] - 100, middle)
     wait_for_second(page, 0)
-    assert position(page) == 0
+    assert shown_position(page) == 0
     page.mouse.up()
 
 
@@ -159,7 +159,7 @@ def test_space_plays_and_pauses_at_chosen_speed(page: Page):
     until(page, "lw.timeline.playing && lw.timeline.position > 6")
     page.keyboard.press("Space")
     until(page, "!lw.timeline.playing")
-    start_position = position(page)
+    start_position = shown_position(page)
     wait_for_second(page, int(start_position))
     page.get_by_role("combobox", name="Speed").select_option("0.1")
     page.get_by_role("button", name="Play (Space)").click()

@@ -25,7 +25,7 @@ SILENCE_S = 1.5
 PAUSE_S = 1.2
 """The time in seconds that the button is held before and after the word; the file is much longer."""
 
-_KEPT = """
+_RECORD_MICROPHONE = """
 const get = navigator.mediaDevices.getUserMedia.bind(navigator.mediaDevices);
 navigator.mediaDevices.getUserMedia = async (wanted) => (window.heard = await get(wanted));
 """
@@ -83,7 +83,7 @@ def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, see
     page.keyboard.up("Space")
 
 
-def position(page: Page) -> tuple[float, float]:
+def robot_position(page: Page) -> tuple[float, float]:
     x, y, *_ = state(page, "frames")["base_footprint"]["position"]
     return x, y
 
@@ -101,7 +101,7 @@ def test_enrolled_words_drive_and_stop_mbot(
     page = open_page(program, wait=False)
     words = page.locator(".word-box summary")
     words.wait_for()  # a robot with voice commands opens the panel
-    page.add_init_script(_KEPT)
+    page.add_init_script(_RECORD_MICROPHONE)
     page.add_init_script(_BUSY)
     page.reload()
     until(page, "lw.ready && 'base_footprint' in lw.frames")
@@ -122,21 +122,21 @@ def test_enrolled_words_drive_and_stop_mbot(
             row.locator(f".word-takes:text-is('{take}/3')").wait_for()
 
     talk_button = page.locator(".voice-talk")
-    x, y = position(page)
+    x, y = robot_position(page)
     speak(page, talk_button, microphone, "forward", seed=7, speed=0.97)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=forward")
     wait_until(
-        lambda: math.hypot(position(page)[0] - x, position(page)[1] - y) > 0.2,
-        what=lambda: position(page),
+        lambda: math.hypot(robot_position(page)[0] - x, robot_position(page)[1] - y) > 0.2,
+        what=lambda: robot_position(page),
         pause=POLL_PERIOD_S,
     )
     speak(page, talk_button, microphone, "stop", seed=8, speed=1.03)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
-    positions = [position(page)]
+    positions = [robot_position(page)]
 
     def is_standing() -> bool:
         page.wait_for_timeout(300)
-        positions.append(position(page))
+        positions.append(robot_position(page))
         return math.dist(positions[-1], positions[-2]) < 1e-3
 
     wait_until(is_standing, what=lambda: positions)

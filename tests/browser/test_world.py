@@ -55,7 +55,7 @@ def move_model(viewer, x: float) -> None:
     viewer.publish("/world_poses", TFMessage(transforms=[transform]), TF_QOS)
 
 
-def bounds(page, link: str, shape: int = 0) -> list[list[float]]:
+def drawn_bounds(page, link: str, shape: int = 0) -> list[list[float]]:
     drawing = page.evaluate("() => window.linkwright.displays[0].drawn")
     box = drawing["links"][link]["visuals"][shape]["bounds"]
     return [[round(coordinate, 2) for coordinate in box[end]] for end in ("min", "max")]
@@ -65,12 +65,12 @@ def test_models_are_drawn_and_moved(live, open_page):
     viewer = publish_world(live)
     page = open_page(viewer)
     viewer.settle(page)
-    assert bounds(page, "crate::link") == [[-2, -2, -0.5], [2, 2, 0.5]]
-    assert bounds(page, "hill::link") == [[-1, -1, 2], [1, 1, 4]]
-    assert bounds(page, "hill::link", 1) == [[0, 0, 6], [2, 2, 6.5]]
+    assert drawn_bounds(page, "crate::link") == [[-2, -2, -0.5], [2, 2, 0.5]]
+    assert drawn_bounds(page, "hill::link") == [[-1, -1, 2], [1, 1, 4]]
+    assert drawn_bounds(page, "hill::link", 1) == [[0, 0, 6], [2, 2, 6.5]]
     move_model(viewer, 3.0)
     viewer.settle(page)
-    assert bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
+    assert drawn_bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
 
 
 def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, tmp_path):
@@ -120,7 +120,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     list_requested.set()
     dialog.get_by_text("No model is on the search path").wait_for()
     assert failure.is_visible(), "a list that arrives late does not hide the error"
-    (tmp_path / "seen.urdf").write_text(SEEN, encoding="utf-8")
+    (tmp_path / "seen.urdf").write_text(VISIBLE_ROBOT, encoding="utf-8")
     dialog.get_by_label("Model or file").fill(str(tmp_path / "seen.urdf"))
     dialog.get_by_role("button", name="Add a model").click()
     dialog.wait_for(state="detached")
@@ -164,7 +164,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     assert page.get_by_role("dialog").is_visible()
 
 
-SEEN = """\
+VISIBLE_ROBOT = """\
 <robot name="seen"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link>
   <joint name="turns" type="continuous"><parent link="base"/><child link="wheel"/></joint>
   <joint name="rolls" type="continuous"><parent link="base"/><child link="roll"/></joint>
@@ -174,7 +174,7 @@ SEEN = """\
 
 
 def test_camera_shows_world_origin_when_robot_falls_out_of_view(start, open_page, tmp_path):
-    (tmp_path / "seen.urdf").write_text(SEEN)
+    (tmp_path / "seen.urdf").write_text(VISIBLE_ROBOT)
     page = open_page(start("sim", "empty", "seen.urdf", "-x", "7", "-z", "-900"))
     page.locator(".banner").get_by_text("no link of 'seen' has a <collision>").wait_for()
     has_fallen = (

@@ -16,7 +16,7 @@ _PAUSE_S = 0.02
 Condition = Callable[[LaunchContext], object]
 
 
-def when(condition: Condition, *actions: Any) -> OpaqueFunction:
+def run_when(condition: Condition, *actions: Any) -> OpaqueFunction:
     """Run actions when a condition holds, or after a minute, so that the test reports what is missing."""
     limit = time.monotonic() + TIMEOUT_S
 
@@ -28,12 +28,12 @@ def when(condition: Condition, *actions: Any) -> OpaqueFunction:
     return OpaqueFunction(function=look)
 
 
-def ends_when(condition: Condition) -> OpaqueFunction:
+def end_when(condition: Condition) -> OpaqueFunction:
     """End the launch when a condition holds."""
-    return when(condition, Shutdown())
+    return run_when(condition, Shutdown())
 
 
-def printed(*texts: str, times: int = 1) -> Condition:
+def has_printed(*texts: str, times: int = 1) -> Condition:
     """Return the condition that the launch has printed each of some texts a number of times."""
 
     def holds(context: LaunchContext) -> bool:

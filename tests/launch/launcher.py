@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tests.waiting import TIMEOUT_S
 
-DRIVER = """
+LAUNCHER_PROGRAM = """
 from linkwright.process.interruption import end_on_interrupt
 end_on_interrupt()
 print("begun", flush=True)
@@ -47,7 +47,7 @@ class Running:
         self._files = [folder / f"{len(list(folder.glob('*-out')))}-{name}" for name in ("out", "err")]
         streams = [path.open("w") for path in self._files]
         self.process = subprocess.Popen(
-            [sys.executable, "-c", DRIVER, *words], stdout=streams[0], stderr=streams[1], cwd=cwd
+            [sys.executable, "-c", LAUNCHER_PROGRAM, *words], stdout=streams[0], stderr=streams[1], cwd=cwd
         )
         for stream in streams:
             stream.close()

@@ -59,7 +59,7 @@ def messages(launch: Any, tmp_path: Path) -> Any:
 
 
 @pytest.fixture(autouse=True)
-def _modules_of_this_test_alone() -> Any:
+def _isolated_modules() -> Any:
     before = set(sys.modules)
     yield
     for name in set(sys.modules) - before:

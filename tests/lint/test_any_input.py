@@ -16,7 +16,7 @@ from linkwright.lint.suppression import directives
 from tests.lint.cases import load_cases
 from tests.work import lines_run
 
-ODD = [
+ODD_VALUES = [
     "",
     " ",
     "nan",
@@ -35,7 +35,7 @@ ODD = [
     "a b",
     "<",
 ]
-VALUE = re.compile(r'="([^"]*)"')
+VALUE_PATTERN = re.compile(r'="([^"]*)"')
 DESCRIPTIONS = [
     case for case in load_cases() if next(iter(case.files)).endswith((".urdf", ".xacro")) and len(case.files) == 1
 ]
@@ -48,11 +48,11 @@ def test_lint_survives_odd_attribute_values(tmp_path, monkeypatch, seed):
     for number, case in enumerate(rng.sample(DESCRIPTIONS, 6)):
         text = next(iter(case.files.values()))
         for _ in range(rng.randint(1, 4)):
-            places = [match.span(1) for match in VALUE.finditer(text)]
+            places = [match.span(1) for match in VALUE_PATTERN.finditer(text)]
             if not places:
                 break
             start, end = rng.choice(places)
-            text = text[:start] + rng.choice(ODD).replace("<", "&lt;") + text[end:]
+            text = text[:start] + rng.choice(ODD_VALUES).replace("<", "&lt;") + text[end:]
         path = tmp_path / f"{number}.urdf"
         path.write_text(text, encoding="utf-8")
         with warnings.catch_warnings():
@@ -85,7 +85,7 @@ def test_suppression_ranges_stay_within_arbitrary_text(before, after):
             assert 0 <= start <= end <= len(text)
 
 
-def chain(count: int, mimic: str = "", disconnected_links: str = "") -> str:
+def chain_of_links(count: int, mimic: str = "", disconnected_links: str = "") -> str:
     """Return a robot with a chain of links; `mimic` is the content of each joint."""
     parts = (
         f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="l{i - 1}"/><child link="l{i}"/>'
@@ -108,7 +108,7 @@ def test_lint_effort_is_linear_in_robot_size(tmp_path, mimic, disconnected_links
 
     def work(count: int) -> int:
         path = tmp_path / "r.urdf"
-        path.write_text(chain(count, mimic, disconnected_links), encoding="utf-8")
+        path.write_text(chain_of_links(count, mimic, disconnected_links), encoding="utf-8")
         return lines_run(lambda: examine(path, settings=settings))
 
     work(5)  # fills caches

@@ -19,8 +19,8 @@ DRIVEN = "<ros2_control>{}</ros2_control>".format(
         f'<joint name="{side}_wheel_joint"><command_interface name="velocity"/></joint>' for side in ("left", "right")
     )
 )
-STATES = DRIVEN.replace("command_interface", "state_interface")
-PLUGIN = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+STATE_INTERFACES_ONLY = DRIVEN.replace("command_interface", "state_interface")
+PLUGIN_ELEMENT = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 <left_joint>left_wheel_joint</left_joint>
 <right_joint>right_wheel_joint</right_joint></plugin></gazebo>"""
 
@@ -38,21 +38,26 @@ def severity_of(tmp_path):
     return check
 
 
-def surface(name, inside="<mu1>1</mu1>"):
+def surface_text(name, inside="<mu1>1</mu1>"):
     return f'<gazebo reference="{name}">{inside}</gazebo>'
 
 
 @pytest.mark.parametrize(
     ("gazebo", "severity"),
     [
-        (surface("base") + surface("arm") + surface("camera"), "INFO"),
-        (surface("base") + surface("arm") + surface("camera", ""), "INFO"),
-        (surface("base") + surface("camera"), "WARNING"),
-        (surface("base") + surface("arm") + surface("arm_lnk"), "WARNING"),
-        (surface("base") + surface("arm") + surface("{name}_foot"), "WARNING"),
-        (surface("base") + surface("arm") + surface("camera", '<sensor name="s" type="camera"/>'), "WARNING"),
+        (surface_text("base") + surface_text("arm") + surface_text("camera"), "INFO"),
+        (surface_text("base") + surface_text("arm") + surface_text("camera", ""), "INFO"),
+        (surface_text("base") + surface_text("camera"), "WARNING"),
+        (surface_text("base") + surface_text("arm") + surface_text("arm_lnk"), "WARNING"),
+        (surface_text("base") + surface_text("arm") + surface_text("{name}_foot"), "WARNING"),
         (
-            surface("base") + surface("arm") + surface("tool", "<preserveFixedJoint>true</preserveFixedJoint>"),
+            surface_text("base") + surface_text("arm") + surface_text("camera", '<sensor name="s" type="camera"/>'),
+            "WARNING",
+        ),
+        (
+            surface_text("base")
+            + surface_text("arm")
+            + surface_text("tool", "<preserveFixedJoint>true</preserveFixedJoint>"),
             "WARNING",
         ),
     ],
@@ -61,7 +66,7 @@ def test_gazebo_surface_of_unknown_link_is_an_info(severity_of, gazebo, severity
     assert severity_of("LW120", ARM.replace("arm", "arm_link") + ARM + gazebo) == severity
 
 
-def moving(mass):
+def moving_link(mass):
     inertial = f'<inertial><mass value="{mass}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     joint = '<joint name="j" type="continuous"><parent link="base"/><child link="part"/></joint>'
     return f'<link name="part"><visual>{BOX}</visual>{inertial}</link>{joint}'
@@ -69,16 +74,17 @@ def moving(mass):
 
 @pytest.mark.parametrize(("mass", "severity"), [("3", "INFO"), ("3.2", "WARNING"), ("20", "WARNING")])
 def test_round_mass_of_small_part_is_an_info(severity_of, mass, severity):
-    assert severity_of("LW320", moving(mass)) == severity
+    assert severity_of("LW320", moving_link(mass)) == severity
 
 
 @pytest.mark.parametrize(("mass", "severity"), [("20.5", "INFO"), ("205", "WARNING")])
 def test_high_density_of_fixed_part_is_an_info(severity_of, mass, severity):
-    assert severity_of("LW320", moving(mass).replace("continuous", "fixed")) == severity
+    assert severity_of("LW320", moving_link(mass).replace("continuous", "fixed")) == severity
 
 
 @pytest.mark.parametrize(
-    ("extra_text", "severity"), [("", "INFO"), (STATES, "INFO"), (DRIVEN, "WARNING"), (PLUGIN, "WARNING")]
+    ("extra_text", "severity"),
+    [("", "INFO"), (STATE_INTERFACES_ONLY, "INFO"), (DRIVEN, "WARNING"), (PLUGIN_ELEMENT, "WARNING")],
 )
 def test_opposing_wheels_are_warning_only_if_driven(severity_of, extra_text, severity):
     assert severity_of("LW643", WHEELS + extra_text) == severity
@@ -127,7 +133,7 @@ def test_malformed_xml_comment_in_world_is_an_info(tmp_path, name, text, severit
 def test_similar_color_of_same_material_is_an_info(severity_of, second, severity):
     gray = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
     visuals = "".join(gray.format(BOX, color) for color in ("0.7 0.7 0.7 1", second))
-    assert severity_of("LW501", moving("3").replace("<inertial>", visuals + "<inertial>")) == severity
+    assert severity_of("LW501", moving_link("3").replace("<inertial>", visuals + "<inertial>")) == severity
 
 
 @pytest.mark.parametrize(("kind", "severity"), [("fixed", "INFO"), ("continuous", "WARNING")])
@@ -184,6 +190,6 @@ def test_relative_mesh_path_beside_mujoco_model_is_an_info(severity_of, tmp_path
     [("", "", "INFO"), ("<gazebo/>", "", "WARNING"), ("", f"<visual>{BOX}</visual>", "WARNING")],
 )
 def test_missing_inertial_without_shape_and_simulator_is_an_info(severity_of, extra_text, shape, severity):
-    robot = moving("3") + f'<link name="command">{shape}</link>'
+    robot = moving_link("3") + f'<link name="command">{shape}</link>'
     joint = '<joint name="k" type="continuous"><parent link="base"/><child link="command"/></joint>'
     assert severity_of("LW301", robot + joint + extra_text) == severity

@@ -37,9 +37,10 @@ def unicycle(lateral: float, longitudinal: float, filename: str = "gz-sim-wheel-
     )
     return (
         f'<model name="unicycle">{parts}<link name="wheel"><pose>0 0 {WHEEL_RADIUS} 0 0 0</pose>'
-        "<inertial><mass>9.97</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial><collision name='c'><geometry><sphere>"
-        f"<radius>{WHEEL_RADIUS}</radius></sphere></geometry></collision></link><joint name='hub' type='revolute'>"
-        f"<parent>up</parent><child>wheel</child><axis><xyz>0 1 0</xyz></axis></joint>{slip}{motor}</model>"
+        "<inertial><mass>9.97</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>"
+        f"<collision name='c'><geometry><sphere><radius>{WHEEL_RADIUS}</radius></sphere></geometry></collision></link>"
+        "<joint name='hub' type='revolute'><parent>up</parent><child>wheel</child><axis><xyz>0 1 0</xyz></axis></joint>"
+        f"{slip}{motor}</model>"
     )
 
 

@@ -45,7 +45,7 @@ def test_malformed_text_is_rejected_with_location(text: str, start: int, end: in
     assert (caught.value.code, caught.value.start, caught.value.end) == ("XAC101", start, end)
 
 
-def _tokens(text: str) -> list[Token] | None:
+def _read_tokens(text: str) -> list[Token] | None:
     try:
         return tokenize(text)
     except Fault:
@@ -54,7 +54,7 @@ def _tokens(text: str) -> list[Token] | None:
 
 @given(TEXTS)
 def test_tokens_cover_whole_text(text: str) -> None:
-    tokens = _tokens(text)
+    tokens = _read_tokens(text)
     assume(tokens is not None)
     assert tokens is not None
     starts = [token.start for token in tokens]

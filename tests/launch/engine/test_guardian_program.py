@@ -57,7 +57,7 @@ def start() -> Iterator[Start]:
         process.communicate(timeout=TIMEOUT_S)
 
 
-def guard(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> None:
+def run_guardian(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(text))
     guardian_program.main(f"{MARK}={mark}")
 
@@ -68,7 +68,7 @@ def test_guardian_ends_processes_and_removes_folder(
     ordinary, stubborn, ended = start(), start("SIGINT", "SIGTERM"), start()
     folder = tmp_path / "files of the launch"
     folder.mkdir()
-    guard(monkeypatch, f"+{ordinary.pid}\n+{stubborn.pid}\n+{ended.pid}\n={folder}\n-{ended.pid}\n")
+    run_guardian(monkeypatch, f"+{ordinary.pid}\n+{stubborn.pid}\n+{ended.pid}\n={folder}\n-{ended.pid}\n")
     assert ordinary.wait(TIMEOUT_S) in (1, -signal.SIGINT)
     assert stubborn.wait(TIMEOUT_S) == -signal.SIGKILL
     assert ended.poll() is None
@@ -77,7 +77,7 @@ def test_guardian_ends_processes_and_removes_folder(
 
 def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     process = start()
-    guard(monkeypatch, f"+{process.pid}\n.\n")
+    run_guardian(monkeypatch, f"+{process.pid}\n.\n")
     assert process.poll() is None
 
 
@@ -86,6 +86,6 @@ def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: 
 )
 def test_guardian_finds_unreported_processes_by_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     marked, other = start(**{MARK: "mine"}), start(**{MARK: "theirs"})
-    guard(monkeypatch, "", "mine")
+    run_guardian(monkeypatch, "", "mine")
     assert marked.wait(TIMEOUT_S) in (1, -signal.SIGINT)
     assert other.poll() is None

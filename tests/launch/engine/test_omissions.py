@@ -13,7 +13,7 @@ from launch_ros.descriptions import ComposableNode
 from launch_ros.substitutions import FindPackageShare
 
 from linkwright.packages import PackageFinder
-from tests.launch.ending import ends_when, printed
+from tests.launch.ending import end_when, has_printed
 
 Write = Callable[[str, str], Path]
 SKIP = {"skip_missing": True}
@@ -131,7 +131,7 @@ class TestMissingPackagesByDefault:
                 executable="component_container",
                 composable_node_descriptions=[ComposableNode(package="zzz_of_others", plugin="zzz::Driver")],
             ),
-            ends_when(printed("skipped")),
+            end_when(has_printed("skipped")),
         )
         assert "one part of the launch is skipped, and the rest runs" in result.err
         assert "'zzz::Driver'" in result.err

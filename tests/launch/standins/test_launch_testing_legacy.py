@@ -13,14 +13,14 @@ from launch_testing.legacy import LaunchTestService, output
 from launch import LaunchDescription, LaunchService
 
 
-def python(program: str) -> Any:
+def execute_python(program: str) -> Any:
     return ExecuteProcess(cmd=[sys.executable, "-u", "-c", program])
 
 
 LASTS = "import time; time.sleep(600)"
 
 
-class Watched:
+class TestedLaunch:
     """A launch description with its tests."""
 
     def __init__(self) -> None:
@@ -33,32 +33,32 @@ class Watched:
 
 
 @pytest.fixture
-def tests() -> Watched:
-    return Watched()
+def tests() -> TestedLaunch:
+    return TestedLaunch()
 
 
 def test_launch_returns_0_if_all_tests_pass(tests) -> None:
-    tests.service.add_fixture_action(tests.description, python(LASTS))
-    tests.service.add_test_action(tests.description, python("pass"))
+    tests.service.add_fixture_action(tests.description, execute_python(LASTS))
+    tests.service.add_test_action(tests.description, execute_python("pass"))
     tests.service.add_test_action(tests.description, OpaqueFunction(function=lambda _: None))
     assert tests.run() == 0
 
 
 def test_launch_returns_status_of_failed_test(tests) -> None:
-    tests.service.add_test_action(tests.description, python(LASTS))
-    tests.service.add_test_action(tests.description, python("raise SystemExit(7)"))
+    tests.service.add_test_action(tests.description, execute_python(LASTS))
+    tests.service.add_test_action(tests.description, execute_python("raise SystemExit(7)"))
     assert tests.run() == 7
 
 
 def test_ended_fixture_fails_launch(tests) -> None:
-    tests.service.add_test_action(tests.description, python(LASTS))
-    tests.service.add_fixture_action(tests.description, python("pass"), exit_allowed=[3])
+    tests.service.add_test_action(tests.description, execute_python(LASTS))
+    tests.service.add_fixture_action(tests.description, execute_python("pass"), exit_allowed=[3])
     assert tests.run() == 1
 
 
 @pytest.mark.parametrize(("expected", "status"), [(b"second", 0), (b"third", 1)])
 def test_process_output_is_compared_with_expected_lines(tests, expected, status) -> None:
-    talker = python("print('pid 7'); print('the first'); print('the second')")
+    talker = execute_python("print('pid 7'); print('the first'); print('the second')")
     tests.description.add_action(talker)
     expected_lines = output.create_output_lines_test([b"first", expected])
     tests.service.add_output_test(tests.description, talker, expected_lines)

@@ -31,11 +31,11 @@ def empty_grid(size: float = 4.0, resolution: float = 0.1) -> Grid:
     return Grid(cells=np.zeros((cells, cells), np.uint8), resolution=resolution)
 
 
-def costmap(*layers, size: float = 4.0, **options) -> LayeredCostmap:
+def make_costmap(*layers, size: float = 4.0, **options) -> LayeredCostmap:
     return LayeredCostmap(empty_grid(size), layers, circle(ROBOT_RADIUS_M), **options)
 
 
-def occupancy(rows: int = 40, columns: int = 40) -> Grid:
+def make_occupancy(rows: int = 40, columns: int = 40) -> Grid:
     return Grid(cells=np.zeros((rows, columns), np.int8), resolution=0.1)
 
 
@@ -46,7 +46,7 @@ class OverheadSensor:
         source_parameters = {"clearing": True, "max_obstacle_height": 2.0, **source}
         self.buffer = ObservationBuffer(Source(**source_parameters))
         self.layer = kind([self.buffer], HeightRange(), *parameters, footprint_clearing=False)
-        self.costmap = costmap(self.layer, *layers)
+        self.costmap = make_costmap(self.layer, *layers)
         self.time_ns = 0
 
     def observe(self, *points, origin=(2.05, 2.05, 0.3)) -> np.ndarray:
@@ -65,8 +65,8 @@ class OverheadSensor:
 
 def inflated_cells(*obstacles, **parameters) -> tuple[np.ndarray, float]:
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer, InflationLayer(Inflation(**parameters)))
-    grid = occupancy()
+    robot = make_costmap(layer, InflationLayer(Inflation(**parameters)))
+    grid = make_occupancy()
     for row, column in obstacles:
         grid.cells[row, column] = 100
     layer.set_map(grid)
@@ -98,8 +98,8 @@ def test_inflation_costs_follow_formula_of_nav2(obstacles, radius, factor):
 
 def test_partial_update_matches_full_update():
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer, InflationLayer(Inflation(inflation_radius=0.5)))
-    grid = occupancy()
+    robot = make_costmap(layer, InflationLayer(Inflation(inflation_radius=0.5)))
+    grid = make_occupancy()
     grid.cells[5:9, 20] = 100
     layer.set_map(grid)
     robot.update(ROBOT_POSE, 0)
@@ -114,8 +114,8 @@ def test_inflate_unknown_extends_inflation_into_unknown_cells():
     for inflate_unknown in (False, True):
         layer = StaticLayer(Interpretation(track_unknown_space=True))
         inflation = InflationLayer(Inflation(inflate_unknown=inflate_unknown, cost_scaling_factor=3.0))
-        robot = costmap(layer, inflation, track_unknown=True)
-        grid = occupancy()
+        robot = make_costmap(layer, inflation, track_unknown=True)
+        grid = make_occupancy()
         grid.cells[:] = -1
         grid.cells[20, 20] = 100
         layer.set_map(grid)
@@ -198,7 +198,7 @@ def test_silent_sensor_makes_costmap_outdated():
 
 def test_footprint_of_robot_is_cleared():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
-    robot = costmap(ObstacleLayer([buffer], HeightRange()))
+    robot = make_costmap(ObstacleLayer([buffer], HeightRange()))
     buffer.add(np.array([2.05, 2.05, 0.3]), np.array([[2.15, 2.05, 0.3], [2.45, 2.05, 0.3]]), 0)
     robot.update(ROBOT_POSE, 0)
     assert np.argwhere(robot.costmap.grid.cells).tolist() == [[20, 24]]
@@ -224,7 +224,7 @@ def test_descending_ray_clears_voxels_it_passes():
 
 def test_voxel_columns_with_few_observations_are_unknown():
     sensor = OverheadSensor(VoxelLayer, Voxels(unknown_threshold=8))
-    sensor.costmap = costmap(sensor.layer, track_unknown=True)
+    sensor.costmap = make_costmap(sensor.layer, track_unknown=True)
     assert sensor.observe((2.55, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 22] == UNKNOWN
     assert sensor.observe((2.55, 2.05, 0.3), origin=(2.05, 2.05, 0.3))[20, 22] == FREE
 
@@ -243,8 +243,8 @@ def test_map_values_become_costs():
 
 def test_rotated_map_is_placed_in_costmap_frame():
     layer = StaticLayer(Interpretation(), pose=lambda: (0.0, 4.0, -np.pi / 2))
-    robot = costmap(layer)
-    grid = occupancy()
+    robot = make_costmap(layer)
+    grid = make_occupancy()
     grid.cells[0, 39] = 100  # x 3.95, y 0.05 in the map
     layer.set_map(grid)
     robot.update(ROBOT_POSE, 0)
@@ -254,8 +254,8 @@ def test_rotated_map_is_placed_in_costmap_frame():
 @given(x=st.integers(-50, 50), y=st.integers(-50, 50))
 def test_map_with_offset_is_placed_in_costmap(x, y):
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer)
-    grid = occupancy(20, 30)
+    robot = make_costmap(layer)
+    grid = make_occupancy(20, 30)
     grid.cells[:] = np.where(np.random.default_rng(0).random((20, 30)) < 0.5, 100, 0)
     grid.x, grid.y = 0.1 * x, 0.1 * y
     layer.set_map(grid)
@@ -270,9 +270,9 @@ def test_map_with_offset_is_placed_in_costmap(x, y):
 
 def test_map_update_changes_part_of_static_layer():
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer)
+    robot = make_costmap(layer)
     assert not layer.update_map(0, 0, np.array([[100]], np.int8))
-    layer.set_map(occupancy())
+    layer.set_map(make_occupancy())
     robot.update(ROBOT_POSE, 0)
     assert layer.update_map(3, 4, np.array([[100]], np.int8))
     assert not layer.update_map(39, 39, np.array([[100, 100]], np.int8))
@@ -282,10 +282,10 @@ def test_map_update_changes_part_of_static_layer():
 
 def test_costmap_without_map_is_not_current():
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer)
+    robot = make_costmap(layer)
     robot.update(ROBOT_POSE, 0)
     assert not robot.is_current(0)
-    layer.set_map(occupancy())
+    layer.set_map(make_occupancy())
     robot.update(ROBOT_POSE, 0)
     assert robot.is_current(0)
     assert not robot.update(ROBOT_POSE, 0)
@@ -299,7 +299,7 @@ class RangeSensor:
 
     def __init__(self, **settings) -> None:
         self.layer = RangeLayer(RangeSettings(**settings))
-        self.costmap = costmap(self.layer)
+        self.costmap = make_costmap(self.layer)
 
     def measure(self, distance: float, *, free: bool = False, times: int = 5) -> np.ndarray:
         for _ in range(times):
@@ -355,8 +355,8 @@ def test_clearing_resets_sonar_likelihoods():
 @pytest.mark.parametrize(("connectivity", "remaining"), [(8, 5), (4, 3)])
 def test_denoise_layer_removes_small_groups(connectivity, remaining):
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer, DenoiseLayer(2, connectivity))
-    grid = occupancy()
+    robot = make_costmap(layer, DenoiseLayer(2, connectivity))
+    grid = make_occupancy()
     grid.cells[10, 10] = 100
     grid.cells[[20, 21], [20, 21]] = 100
     grid.cells[30, 3:6] = 100
@@ -371,7 +371,7 @@ def test_denoise_layer_removes_small_groups(connectivity, remaining):
 def test_rolling_window_keeps_observations():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
     layer = ObstacleLayer([buffer], HeightRange(), footprint_clearing=False)
-    robot = costmap(layer, is_rolling=True, size=2.0)
+    robot = make_costmap(layer, is_rolling=True, size=2.0)
     robot.update((0.0, 0.0, 0.0), 0)
     buffer.add(np.array([0.0, 0.0, 0.3]), np.array([[0.55, 0.25, 0.3]]), 0)
     robot.update((0.0, 0.0, 0.0), 0)
@@ -401,7 +401,7 @@ def test_clearing_removes_observations_and_keeps_map():
     layer = StaticLayer(Interpretation())
     sensor = OverheadSensor(layers=[])
     robot = LayeredCostmap(empty_grid(), [layer, sensor.layer], circle(ROBOT_RADIUS_M))
-    grid = occupancy()
+    grid = make_occupancy()
     grid.cells[3, 3] = 100
     layer.set_map(grid)
     sensor.costmap = robot

@@ -15,7 +15,7 @@ SCAN = get_message("sensor_msgs/msg/LaserScan")
 RAY_COUNT = 360
 
 
-def walls(rows: int = 60, columns: int = 80) -> Grid:
+def make_room_cells(rows: int = 60, columns: int = 80) -> Grid:
     """Return a room of 4 by 3 m with walls around it, in cells of 5 cm."""
     cells = np.zeros((rows, columns), np.int8)
     cells[[0, -1]] = 100

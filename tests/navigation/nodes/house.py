@@ -20,7 +20,7 @@ from tests.places import GAZEBO_PACKAGE, PACKAGE
 HOUSE = GAZEBO_PACKAGE / "worlds" / "house.world"
 MBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
 START_POSE = (0.0, 0.0, 0.0)
-TOUR = [
+TOUR_POINTS = [
     (-2.0, 0.0), (-2.0, 1.9), (-2.8, 1.7), (-2.0, 1.7), (-2.0, -0.2), (-3.6, -0.1), (-2.2, -0.8), (-2.2, -2.9),
     (-0.2, -2.6), (0.6, -1.7), (2.3, -1.7), (3.4, -0.6), (3.6, -1.6), (2.2, -1.7), (0.6, -1.7), (0.0, 0.2), (0.0, 2.5),
     (2.4, 2.4), (1.8, 2.5), (0.0, 2.5), (0.0, -0.1), (-1.5, -0.2),
@@ -28,7 +28,7 @@ TOUR = [
 """A path through living room, bedroom, living room, kitchen, hall and bath, and back, in the frame of the house."""
 
 
-def simulation(**options: Any) -> SteppedSimulation:
+def make_house_simulation(**options: Any) -> SteppedSimulation:
     """Return a simulation of the house with mbot at `START_POSE`."""
     return SteppedSimulation(
         HOUSE,
@@ -40,7 +40,7 @@ def simulation(**options: Any) -> SteppedSimulation:
     )
 
 
-def drive(test: SteppedSimulation, corners: list[tuple[float, float]], speed: float = 0.7) -> None:
+def drive_through(test: SteppedSimulation, corners: list[tuple[float, float]], speed: float = 0.7) -> None:
     """Drive from corner to corner by the robot's true pose."""
     for x, y in corners:
         while True:
@@ -102,7 +102,7 @@ class Drift:
         self._last_pose = pose
 
 
-def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarray:
+def upright_faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarray:
     """Return the upright faces of some models' boxes at a height, shape (n, 2, 2).
 
     Each face goes from right to left, as seen from outside.
@@ -127,7 +127,7 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
     return np.array(segments)
 
 
-def distances(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
+def distances_to_faces(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the distance of points (n, 2) from the nearest face in meters, shape (n,)."""
     start, directions = faces[:, 0], faces[:, 1] - faces[:, 0]
     offsets = points[:, None] - start
@@ -142,13 +142,13 @@ def visible_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
     for start, end in faces:
         length = float(np.hypot(*(end - start)))
         direction = (end - start) / length
-        row = start + np.linspace(0.02, length - 0.02, max(2, round(length / 0.05)))[:, None] * direction
-        free = np.ones(len(row), dtype=bool)
+        points_along_face = start + np.linspace(0.02, length - 0.02, max(2, round(length / 0.05)))[:, None] * direction
+        is_free = np.ones(len(points_along_face), dtype=bool)
         for distance in (0.1, 0.2):
-            cells = grid.cells_of(row + distance * np.array((direction[1], -direction[0])))
-            free &= grid.contains(cells)
-            free[free] = grid.cells[tuple(cells[free].T)] == FREE
-        points.append(row[free])
+            cells = grid.cells_of(points_along_face + distance * np.array((direction[1], -direction[0])))
+            is_free &= grid.contains(cells)
+            is_free[is_free] = grid.cells[tuple(cells[is_free].T)] == FREE
+        points.append(points_along_face[is_free])
     return np.concatenate(points)
 
 
@@ -157,7 +157,7 @@ def occupied_centers(grid: Grid) -> np.ndarray:
     return grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
 
 
-def gaps(grid: Grid, points: np.ndarray) -> np.ndarray:
+def distances_to_occupied_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
     """Return the distance of each point (n, 2) from the nearest occupied cell in meters, shape (n,)."""
     occupied = occupied_centers(grid)
     return np.array([np.hypot(*(occupied - point).T).min() for point in points])

@@ -17,7 +17,7 @@ from linkwright.navigation.nodes.controller_server import ControllerServer
 from linkwright.navigation.nodes.costmap_messages import raw_message
 from linkwright.navigation.nodes.waypoint_follower import WaypointFollower
 from linkwright.nodes import NodeOptions
-from tests.navigation.following.driving import line
+from tests.navigation.following.driving import path_through
 from tests.navigation.nodes.robots import DrivingRobot, GoalSender, path_message, pose_stamped
 from tests.navigation.nodes.test_controller_server import LOCAL, PURE_PURSUIT
 
@@ -42,7 +42,7 @@ class Planner:
             return result
         goal = handle.request
         poses = [pose.pose.position for pose in (goal.goals if hasattr(goal, "goals") else [goal.goal])]
-        result.path = path_message(line(self.scene.pose[:2], *[(pose.x, pose.y) for pose in poses]))
+        result.path = path_message(path_through(self.scene.pose[:2], *[(pose.x, pose.y) for pose in poses]))
         handle.succeed()
         return result
 

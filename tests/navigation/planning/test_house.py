@@ -15,7 +15,7 @@ from linkwright.navigation.planning.potential import compute_potential, crossing
 from tests.places import GAZEBO_PACKAGE
 
 ROBOT_RADIUS_M = 0.22
-WALLS = np.array((4.9, 3.9))
+OUTER_WALLS = np.array((4.9, 3.9))
 """The distances in meters from the origin to the inner sides of the outer walls, along x and y."""
 ROOM_POINTS = {
     "living room": (0.0, 0.0),
@@ -28,7 +28,7 @@ DOORS = [(-1.5, 1.05), (0.9, 2.5), (1.55, -1.6)]
 """The doors of bedroom, bath and kitchen."""
 
 
-def house() -> Grid:
+def load_house() -> Grid:
     return load_map(GAZEBO_PACKAGE / "maps" / "house.yaml")
 
 
@@ -45,18 +45,18 @@ def reachable_cells(grid: Grid) -> np.ndarray:
 def free_or_outside(grid: Grid) -> np.ndarray:
     """Return the cells that are free or outside the house."""
     centers = grid.centers_of(np.moveaxis(np.indices(grid.cells.shape), 0, -1))
-    return (grid.cells == FREE) | (np.abs(centers) > WALLS).any(axis=-1)
+    return (grid.cells == FREE) | (np.abs(centers) > OUTER_WALLS).any(axis=-1)
 
 
 def test_planner_reaches_all_rooms_and_no_unseen_cells():
-    grid = house()
+    grid = load_house()
     reachable = reachable_cells(grid)
     assert all(reachable[tuple(grid.cells_of(np.array(point)))] for point in ROOM_POINTS.values())
     assert free_or_outside(grid)[reachable].all()
 
 
 def test_closed_doors_separate_rooms():
-    grid = house()
+    grid = load_house()
     for door in DOORS:
         row, column = grid.cells_of(np.array(door))
         grid.cells[row - 8 : row + 9, column - 8 : column + 9] = OCCUPIED

@@ -9,8 +9,8 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.panels.export.feature import export_snapshot
-from tests.browser.golden import GOLDEN, golden_links, link, mesh, robot_of
-from tests.browser.mesh_writers import dae, png
+from tests.browser.golden import GOLDEN, golden_links, link_element, mesh_visual, robot_of
+from tests.browser.mesh_writers import make_png, write_dae
 from tests.panels.export.robots import GRIPPER, Glb, snapshot
 
 
@@ -71,7 +71,7 @@ def test_glb_meshes_match_size_and_color_of_page(tmp_path):
 
 
 def textured_dae() -> str:
-    text = dae(diffuse="<texture texture='c' texcoord='UV'/>").decode()
+    text = write_dae(diffuse="<texture texture='c' texcoord='UV'/>").decode()
     sampler = (
         "<newparam sid='f'><surface type='2D'><init_from>i</init_from></surface></newparam>"
         "<newparam sid='c'><sampler2D><source>f</source></sampler2D></newparam><technique sid='t'>"
@@ -82,10 +82,10 @@ def textured_dae() -> str:
 
 
 def test_glb_contains_texture(tmp_path):
-    skin = png(255, 255, 0)
+    skin = make_png(255, 255, 0)
     (tmp_path / "skin.png").write_bytes(skin)
     texture = f'<material name="skin"><texture filename="{(tmp_path / "skin.png").as_uri()}"/></material>'
-    text = robot_of(link("box", f'<visual><geometry><box size="1 1 1"/></geometry>{texture}</visual>'))
+    text = robot_of(link_element("box", f'<visual><geometry><box size="1 1 1"/></geometry>{texture}</visual>'))
     glb = Glb(export_snapshot(snapshot(text), "glb"))
     (drawn,) = glb.drawn
     assert (drawn.textured, drawn.color) == (True, "#ffffff")
@@ -96,7 +96,7 @@ def test_unreadable_mesh_is_named(tmp_path):
     path = tmp_path / "broken.dae"
     path.write_text("no mesh")
     with pytest.raises(LinkwrightError) as caught:
-        export_snapshot(snapshot(robot_of(link("arm", mesh(path, "")))), "glb")
+        export_snapshot(snapshot(robot_of(link_element("arm", mesh_visual(path, "")))), "glb")
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "VIEW204"
     assert "'arm'" in diagnostic.message
@@ -105,7 +105,7 @@ def test_unreadable_mesh_is_named(tmp_path):
 
 def test_missing_mesh_is_reported_and_omitted():
     shown = snapshot(
-        robot_of(link("arm", '<visual><geometry><mesh filename="file:///no/where.stl"/></geometry></visual>'))
+        robot_of(link_element("arm", '<visual><geometry><mesh filename="file:///no/where.stl"/></geometry></visual>'))
     )
     (problem,) = shown.problems
     assert problem.code == "VIEW203"

@@ -16,8 +16,8 @@ from linkwright.panels.export import html
 from linkwright.panels.export.feature import export_snapshot, format_of
 from linkwright.panels.export.snapshot import snapshot_of
 from linkwright.rviz import RvizConfig
-from tests.browser.golden import link, mesh, robot_of
-from tests.browser.mesh_writers import dae, glb, obj, png, stl_binary
+from tests.browser.golden import link_element, mesh_visual, robot_of
+from tests.browser.mesh_writers import make_png, write_dae, write_glb, write_obj, write_stl_binary
 from tests.panels.export.robots import GRIPPER, snapshot
 from tests.viewer.scene import ARM, open_world
 
@@ -43,8 +43,10 @@ def page(text: str) -> str:
 
 def test_same_files_give_the_same_bytes(tmp_path):
     for name in ("a.stl", "b.stl"):
-        (tmp_path / name).write_bytes(stl_binary())
-    text = robot_of(link("a", mesh(tmp_path / "a.stl", "")) + link("b", mesh(tmp_path / "b.stl", "")))
+        (tmp_path / name).write_bytes(write_stl_binary())
+    text = robot_of(
+        link_element("a", mesh_visual(tmp_path / "a.stl", "")) + link_element("b", mesh_visual(tmp_path / "b.stl", ""))
+    )
     first = page(text)
     os.utime(tmp_path / "a.stl", (1_000_000, 1_000_000))
     assert page(text) == first
@@ -98,34 +100,36 @@ def test_robot_names_are_escaped():
 
 
 def test_meshes_and_referenced_files_are_embedded(tmp_path):
-    (tmp_path / "a.dae").write_bytes(dae())
-    (tmp_path / "b.obj").write_bytes(obj("b.mtl", "paint"))
+    (tmp_path / "a.dae").write_bytes(write_dae())
+    (tmp_path / "b.obj").write_bytes(write_obj("b.mtl", "paint"))
     (tmp_path / "b.mtl").write_text("newmtl paint\nKd 1 0 0\nmap_Kd -s 1 1 wood.png\n")
-    (tmp_path / "wood.png").write_bytes(png(1, 2, 3))
-    (tmp_path / "c.glb").write_bytes(glb())
-    (tmp_path / "d.stl").write_bytes(stl_binary())
-    (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
+    (tmp_path / "wood.png").write_bytes(make_png(1, 2, 3))
+    (tmp_path / "c.glb").write_bytes(write_glb())
+    (tmp_path / "d.stl").write_bytes(write_stl_binary())
+    (tmp_path / "secret.png").write_bytes(make_png(9, 9, 9))
     names = ("a.dae", "b.obj", "c.glb", "d.stl")
-    logged = recorded(page(robot_of("".join(link(name[0], mesh(tmp_path / name, "")) for name in names))))
+    logged = recorded(
+        page(robot_of("".join(link_element(name[0], mesh_visual(tmp_path / name, "")) for name in names)))
+    )
     files = {path.rpartition("/")[2]: base64.b64decode(data) for path, data in logged["files"].items()}
     assert set(files) == {*names, "b.mtl", "wood.png"}
-    assert files["d.stl"] == stl_binary()
+    assert files["d.stl"] == write_stl_binary()
 
 
 def test_meshes_cannot_embed_files_from_other_folders(tmp_path):
-    (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
+    (tmp_path / "secret.png").write_bytes(make_png(9, 9, 9))
     folder = tmp_path / "meshes"
     folder.mkdir()
-    (folder / "b.obj").write_bytes(obj("b.mtl", "paint"))
+    (folder / "b.obj").write_bytes(write_obj("b.mtl", "paint"))
     (folder / "b.mtl").write_text("newmtl paint\nmap_Kd ../secret.png\nmap_Ks /etc/passwd\n")
     (folder / "link.mtl").symlink_to(tmp_path / "secret.png")
-    logged = recorded(page(robot_of(link("b", mesh(folder / "b.obj", "")))))
+    logged = recorded(page(robot_of(link_element("b", mesh_visual(folder / "b.obj", "")))))
     assert {path.rpartition("/")[2] for path in logged["files"]} == {"b.obj", "b.mtl"}
 
 
 def test_html_contains_no_local_paths(tmp_path):
-    (tmp_path / "d.stl").write_bytes(stl_binary())
-    text = page(robot_of(link("d", mesh(tmp_path / "d.stl", ""))))
+    (tmp_path / "d.stl").write_bytes(write_stl_binary())
+    text = page(robot_of(link_element("d", mesh_visual(tmp_path / "d.stl", ""))))
     assert str(tmp_path) not in text
     # The secret in the URLs of the program's files is not exported either.
     assert re.search(r"/mesh/[^/~]+/d\.stl", text)
