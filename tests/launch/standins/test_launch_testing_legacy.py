@@ -20,7 +20,7 @@ def execute_python(program: str) -> Any:
 LASTS = "import time; time.sleep(600)"
 
 
-class TestedLaunch:
+class LaunchWithTests:
     """A launch description with its tests."""
 
     def __init__(self) -> None:
@@ -33,8 +33,8 @@ class TestedLaunch:
 
 
 @pytest.fixture
-def tests() -> TestedLaunch:
-    return TestedLaunch()
+def tests() -> LaunchWithTests:
+    return LaunchWithTests()
 
 
 def test_launch_returns_0_if_all_tests_pass(tests) -> None:
