@@ -9,8 +9,8 @@ import pytest
 
 from linkwright.messages import get_message, get_service
 from linkwright.testing import Recording
-from tests.simulation.test_joint_controllers import arm
-from tests.simulation.test_joint_trajectory import trajectory
+from tests.simulation.test_joint_controllers import arm_model
+from tests.simulation.test_joint_trajectory import make_trajectory
 from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
 from tests.waiting import TIMEOUT_S
@@ -43,7 +43,7 @@ def box_with_force(extra: str = "", name: str = "push", yaw: float = 0.0) -> str
     return box("crate", f"0 0 0 0 0 {yaw}", "1 1 1", 2.0).replace("</model>", f"{plugin}</model>")
 
 
-async def push(graph, topic: str, force: tuple[float, float, float]) -> None:
+async def publish_wrench(graph, topic: str, force: tuple[float, float, float]) -> None:
     """Publish a wrench."""
     message = get_message("geometry_msgs/msg/Wrench")()
     message.force.x, message.force.y, message.force.z = force
@@ -57,7 +57,7 @@ async def push(graph, topic: str, force: tuple[float, float, float]) -> None:
 async def test_force_acts_in_world_or_link_frame(frame, position):
     text = box_with_force(f"<force_frame>{frame}</force_frame>", yaw=pi / 2)
     async with running_server("<gravity>0 0 0</gravity>", text) as (server, graph, log):
-        await push(graph, "/push", (4.0, 0.0, 0.0))
+        await publish_wrench(graph, "/push", (4.0, 0.0, 0.0))
         server.advance(SECOND_NS)
         assert server.simulation.model_pose("crate")[:2] == pytest.approx(position, abs=2e-3)
         server.reset()
@@ -71,8 +71,8 @@ async def test_forces_of_several_plugins_add_up():
     second = f'<plugin name="two" filename="libgazebo_ros_force.so">{names}</plugin>'
     text = box_with_force().replace("</model>", f"{second}</model>")
     async with running_server("<gravity>0 0 0</gravity>", text) as (server, graph, log):
-        await push(graph, "/push", (4.0, 0.0, 0.0))
-        await push(graph, "/two", (0.0, 2.0, 0.0))
+        await publish_wrench(graph, "/push", (4.0, 0.0, 0.0))
+        await publish_wrench(graph, "/two", (0.0, 2.0, 0.0))
         server.advance(SECOND_NS)
         assert server.simulation.model_pose("crate")[:2] == pytest.approx((1.0, 0.5), abs=2e-3)
         assert not log
@@ -126,7 +126,7 @@ async def test_state_services_are_in_plugin_namespace():
 
 
 async def test_service_sets_joint_positions():
-    horizontal_arm = arm("").replace("0 1 0", "0 0 1")
+    horizontal_arm = arm_model("").replace("0 1 0", "0 0 1")
     kind, name = "gazebo_msgs/srv/SetModelConfiguration", "/world/set_joint_positions"
     async with running_server(horizontal_arm, STATE) as (server, graph, _):
         fields = {"model_name": "arm", "joint_names": ["shoulder"]}
@@ -140,7 +140,7 @@ async def test_service_sets_joint_positions():
 
 
 async def test_services_return_properties_and_set_gravity():
-    async with running_server(GROUND, arm(""), box("crate", "5 0 1 0 0 0", "1 1 1", 3.0), PROPERTIES) as (
+    async with running_server(GROUND, arm_model(""), box("crate", "5 0 1 0 0 0", "1 1 1", 3.0), PROPERTIES) as (
         server,
         graph,
         log,
@@ -168,7 +168,7 @@ async def test_services_return_properties_and_set_gravity():
 
 async def test_services_change_link_and_joint_properties():
     crate = box("crate", "5 0 1 0 0 0", "1 1 1", 3.0)
-    async with running_server(GROUND, arm(""), crate, PROPERTIES) as (server, graph, log):
+    async with running_server(GROUND, arm_model(""), crate, PROPERTIES) as (server, graph, log):
         kind = "gazebo_msgs/srv/SetLinkProperties"
         facts = {"mass": 6.0, "ixx": 1.0, "iyy": 1.0, "izz": 1.0, "gravity_mode": False, "link_name": "crate::link"}
         assert (await call_service(graph, server, kind, "/set_link_properties", **facts)).success
@@ -202,8 +202,8 @@ async def test_services_change_link_and_joint_properties():
 
 async def test_joint_pose_trajectory_jumps_between_points():
     plugin = '<plugin name="poses" filename="libgazebo_ros_joint_pose_trajectory.so"/>'
-    async with running_server(arm(plugin).replace("0 1 0", "0 0 1")) as (server, graph, log):
-        message = trajectory((1.0, 0.3), (1.0, 0.6), (0.0, 0.9))
+    async with running_server(arm_model(plugin).replace("0 1 0", "0 0 1")) as (server, graph, log):
+        message = make_trajectory((1.0, 0.3), (1.0, 0.6), (0.0, 0.9))
         message.header.frame_id = "world"
         node = graph.create_node("planner")
         publisher = node.create_publisher("trajectory_msgs/msg/JointTrajectory", "/set_joint_trajectory", 1)

@@ -19,7 +19,7 @@ WHEEL = f"<cylinder><radius>{WHEEL_RADIUS}</radius><length>0.05</length></cylind
 LENGTH, WIDTH = 0.4, 0.5
 
 
-def steering(extra: str = "") -> str:
+def steering_plugin(extra: str = "") -> str:
     """Return the plugin of gz for the car."""
     return (
         '<plugin name="gz::sim::systems::AckermannSteering" filename="gz-sim-ackermann-steering-system">'
@@ -32,7 +32,7 @@ def steering(extra: str = "") -> str:
     )
 
 
-def mecanum(extra: str = "", name: str = "robot") -> str:
+def mecanum_robot(extra: str = "", name: str = "robot") -> str:
     """Return a robot of 9 kg with four mecanum wheels and the plugin of gz."""
     text = box(name, "0 0 0.2 0 0 0", "0.6 0.3 0.1", 5.0)
     corners = [(end, side) for end in ("front", "back") for side in ("left", "right")]
@@ -64,7 +64,7 @@ def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
 
 
 async def test_car_drives_commanded_circle_with_correct_odometry():
-    async with running_server(GROUND, car(steering())) as (server, graph, log):
+    async with running_server(GROUND, car(steering_plugin())) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, yaw_rate=0.3, seconds=2.0)
         begin = yaw_of(server.simulation.model_pose("car"))
@@ -84,7 +84,11 @@ async def test_car_drives_commanded_circle_with_correct_odometry():
 
 
 async def test_car_respects_steering_limit_backward():
-    async with running_server(GROUND, car(steering("<steering_limit>0.3</steering_limit>"))) as (server, graph, log):
+    async with running_server(GROUND, car(steering_plugin("<steering_limit>0.3</steering_limit>"))) as (
+        server,
+        graph,
+        log,
+    ):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, -0.5, yaw_rate=5.0, seconds=2.0)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
@@ -97,7 +101,7 @@ async def test_car_respects_steering_limit_backward():
 
 
 async def test_steering_only_follows_angle():
-    steering_only = steering("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
+    steering_only = steering_plugin("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
     async with running_server(GROUND, car(steering_only)) as (server, graph, log):
         node = graph.create_node("driver")
         publisher = node.create_publisher("std_msgs/msg/Float64", "/model/car/steer_angle", 10)
@@ -110,7 +114,7 @@ async def test_steering_only_follows_angle():
 
 
 async def test_car_without_wheel_joints_is_reported():
-    none = steering().replace("<left_joint>rear_left_joint</left_joint>", "")
+    none = steering_plugin().replace("<left_joint>rear_left_joint</left_joint>", "")
     async with running_server(GROUND, car(none)) as (server, _, log):
         assert not server.plugins("car")
         assert [
@@ -124,7 +128,7 @@ async def test_car_without_wheel_joints_is_reported():
     ids=["forward", "sideways", "turning"],
 )
 async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(command, displacement):
-    async with running_server(GROUND, mecanum()) as (server, graph, log):
+    async with running_server(GROUND, mecanum_robot()) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, *command, seconds=1.0)
         begin, message = server.simulation.model_pose("robot"), odometry.last.pose.pose.position
@@ -142,7 +146,7 @@ async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(comman
 
 
 async def test_mecanum_wheels_turn_oppositely_sideways_and_stop_on_reset():
-    async with running_server(GROUND, mecanum("<max_linear_velocity>0.2</max_linear_velocity>")) as (
+    async with running_server(GROUND, mecanum_robot("<max_linear_velocity>0.2</max_linear_velocity>")) as (
         server,
         graph,
         log,

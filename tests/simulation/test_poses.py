@@ -9,7 +9,7 @@ from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
 
-def poses(extra: str = "") -> str:
+def pose_plugin(extra: str = "") -> str:
     """Return the plugin."""
     name = "gz::sim::systems::PosePublisher"
     return f'<plugin name="{name}" filename="gz-sim-pose-publisher-system">{extra}</plugin>'
@@ -21,7 +21,11 @@ def _translation(transform):
 
 
 async def test_link_poses_are_published_as_separate_messages():
-    async with running_server(GROUND, robot(poses("<update_frequency>10</update_frequency>"))) as (server, graph, log):
+    async with running_server(GROUND, robot(pose_plugin("<update_frequency>10</update_frequency>"))) as (
+        server,
+        graph,
+        log,
+    ):
         recording = Recording(graph, server.node, "/model/mbot/pose")
         server.advance(SECOND_NS)
         await graph.settle()
@@ -46,7 +50,7 @@ async def test_static_poses_have_separate_topic():
         "<publish_link_pose>true</publish_link_pose><update_frequency>50</update_frequency>"
         "<static_update_frequency>1</static_update_frequency>"
     )
-    async with running_server(GROUND, robot(poses(settings))) as (server, graph, log):
+    async with running_server(GROUND, robot(pose_plugin(settings))) as (server, graph, log):
         moving, resting = (Recording(graph, server.node, f"/model/mbot/{topic}") for topic in ("pose", "pose_static"))
         server.advance(SECOND_NS)
         await graph.settle()
@@ -73,7 +77,7 @@ async def test_nested_model_poses_are_published():
         "<use_pose_vector_msg>true</use_pose_vector_msg>"
     )
     outer_model = box("outer", "1 0 3 0 0 0", "0.2 0.2 0.2").replace(
-        "</model>", f"{inner_model}{joint}{poses(settings)}</model>"
+        "</model>", f"{inner_model}{joint}{pose_plugin(settings)}</model>"
     )
     async with running_server(outer_model) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/outer/pose")
@@ -94,7 +98,7 @@ async def test_nested_model_poses_are_published():
 
 async def test_static_model_publishes_poses():
     fixed_model = box("one", "0 0 1 0 0 0").replace("<link", "<static>true</static><link", 1)
-    text = fixed_model.replace("</model>", poses("<publish_model_pose>1</publish_model_pose>") + "</model>")
+    text = fixed_model.replace("</model>", pose_plugin("<publish_model_pose>1</publish_model_pose>") + "</model>")
     async with running_server(text) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/one/pose")
         server.advance(SECOND_NS // 1000)

@@ -19,11 +19,11 @@ ALL, DYNAMIC = "/world/test/pose/info", "/world/test/dynamic_pose/info"
 LINKS = ["base_link", "left_wheel", "right_wheel", "front_caster", "back_caster"]
 
 
-def names(message):
+def frame_names(message):
     return [transform.child_frame_id for transform in message.transforms]
 
 
-def translation(message, name):
+def translation_of(message, name):
     position = next(
         transform for transform in message.transforms if transform.child_frame_id == name
     ).transform.translation
@@ -36,9 +36,9 @@ async def test_dynamic_poses_list_models_before_links():
         server.advance(SECOND_NS)
         await graph.settle()
         assert 59 <= len(recording) <= 61
-        assert names(recording.last) == ["mbot", *LINKS]
-        assert translation(recording.last, "mbot") == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
-        assert translation(recording.last, "left_wheel") == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
+        assert frame_names(recording.last) == ["mbot", *LINKS]
+        assert translation_of(recording.last, "mbot") == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
+        assert translation_of(recording.last, "left_wheel") == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
         assert {transform.header.frame_id for transform in recording.last.transforms} == {""}
         assert recording.last.transforms[0].header.stamp.nanosec > 0.9 * SECOND_NS
         assert not log
@@ -58,9 +58,9 @@ async def test_all_poses_include_visuals_and_lights():
         recording = Recording(graph, server.node, ALL)
         server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert names(recording.last) == ["ground", "crate", "link", "link", "lid", "sun"]
-        assert translation(recording.last, "lid") == (0.0, 0.0, 0.5)
-        assert translation(recording.last, "sun") == (0.0, 0.0, 10.0)
+        assert frame_names(recording.last) == ["ground", "crate", "link", "link", "lid", "sun"]
+        assert translation_of(recording.last, "lid") == (0.0, 0.0, 0.5)
+        assert translation_of(recording.last, "sun") == (0.0, 0.0, 10.0)
         assert not log
 
 
@@ -70,11 +70,11 @@ async def test_spawned_models_are_included_and_deleted_ones_removed():
         server.spawn(model(box("box", "0 0 0.5 0 0 0", "1 1 1")), "crate")
         server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert names(recording.last) == ["crate", "link"]
+        assert frame_names(recording.last) == ["crate", "link"]
         server.delete("crate")
         server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert names(recording.last) == []
+        assert frame_names(recording.last) == []
 
 
 async def test_model_without_links_is_included():
@@ -83,7 +83,7 @@ async def test_model_without_links_is_included():
         recording = Recording(graph, server.node, ALL)
         server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert translation(recording.last, "mark") == (1.0, 2.0, 3.0)
+        assert translation_of(recording.last, "mark") == (1.0, 2.0, 3.0)
         assert not log
 
 

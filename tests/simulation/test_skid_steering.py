@@ -15,7 +15,7 @@ WHEEL_RADIUS, TRACK_WIDTH = 0.1, 0.4
 SIDES = tuple((end, side) for end in ("front", "back") for side in ("left", "right"))
 
 
-def skid(length: float, surface: str = "") -> str:
+def skid_robot(length: float, surface: str = "") -> str:
     """Return a robot of 9 kg with four wheels; the length is the distance of its axles."""
     text = box("robot", "0 0 0.2 0 0 0", "0.6 0.3 0.1", 5.0)
     for end, side in SIDES:
@@ -37,15 +37,17 @@ def skid(length: float, surface: str = "") -> str:
     return text.replace("</model>", f"{plugin}{sizes}</plugin></model>")
 
 
-def friction(mu: float, mu2: float) -> str:
+def friction_element(mu: float, mu2: float) -> str:
     """Return a surface."""
     return f"<surface><friction><ode><mu>{mu}</mu><mu2>{mu2}</mu2></ode></friction></surface>"
 
 
-@pytest.mark.parametrize("surface", ["", friction(100.0, 50.0), friction(1.0, 0.05)], ids=["default", "rubber", "mu2"])
+@pytest.mark.parametrize(
+    "surface", ["", friction_element(100.0, 50.0), friction_element(1.0, 0.05)], ids=["default", "rubber", "mu2"]
+)
 @pytest.mark.parametrize("length", [0.2, 0.4])
 async def test_skid_steering_turn_rate_matches_coulomb_friction(length, surface):
-    async with running_server(GROUND, skid(length, surface)) as (server, graph, log):
+    async with running_server(GROUND, skid_robot(length, surface)) as (server, graph, log):
         await drive(server, graph, yaw_rate=0.5, seconds=1.0)
         begin = yaw_of(server.simulation.model_pose("robot"))
         await drive(server, graph, yaw_rate=0.5, seconds=1.0)
@@ -55,9 +57,9 @@ async def test_skid_steering_turn_rate_matches_coulomb_friction(length, surface)
         assert not log
 
 
-@pytest.mark.parametrize("surface", ["", friction(1.0, 0.05)], ids=["default", "mu2"])
+@pytest.mark.parametrize("surface", ["", friction_element(1.0, 0.05)], ids=["default", "mu2"])
 async def test_skid_steering_drives_straight(surface):
-    async with running_server(GROUND, skid(0.4, surface)) as (server, graph, log):
+    async with running_server(GROUND, skid_robot(0.4, surface)) as (server, graph, log):
         await drive(server, graph, 0.5, seconds=1.0)
         begin = server.simulation.model_pose("robot")
         await drive(server, graph, 0.5, seconds=1.0)

@@ -15,7 +15,7 @@ ROBOT_COUNT = 9
 CHECK_PERIOD = 20 * NANOSECONDS_PER_SECOND // 1000
 
 
-def driving_robots(*extra_models: str, robots: int = ROBOT_COUNT) -> Simulation:
+def make_driving_robots(*extra_models: str, robots: int = ROBOT_COUNT) -> Simulation:
     """Return robots side by side that drive straight, each a little faster than the previous one."""
     robot_models = [
         mbot(f"0 {number} 0.11 0 0 0").replace('name="mbot"', f'name="mbot{number}"', 1) for number in range(robots)
@@ -42,13 +42,13 @@ def is_solved_jointly(simulation: Simulation) -> bool:
 
 
 def test_joint_solving_of_many_robots_gives_same_motion(monkeypatch):
-    together = driving_robots()
+    together = make_driving_robots()
     together.advance(5 * CHECK_PERIOD)
     assert is_solved_jointly(together)
     together.advance(NANOSECONDS_PER_SECOND)
     with monkeypatch.context() as patch:
         patch.setattr(Solving, "_update_solver", lambda _: None)
-        reference = driving_robots()
+        reference = make_driving_robots()
         reference.advance(5 * CHECK_PERIOD + NANOSECONDS_PER_SECOND)
         assert not is_solved_jointly(reference)
     assert together.model_pose("mbot8")[0] > 0.3
@@ -56,14 +56,14 @@ def test_joint_solving_of_many_robots_gives_same_motion(monkeypatch):
 
 
 def test_few_robots_are_solved_separately():
-    simulation = driving_robots(robots=4)
+    simulation = make_driving_robots(robots=4)
     simulation.advance(5 * CHECK_PERIOD)
     assert not is_solved_jointly(simulation)
 
 
 def test_resting_boxes_fall_asleep_while_robots_drive():
     boxes = [box(f"box{number}", f"{number} -3 0.1 0 0 0", "0.2 0.2 0.2") for number in range(6)]
-    simulation = driving_robots(*boxes)
+    simulation = make_driving_robots(*boxes)
     simulation.advance(2 * CHECK_PERIOD)
     assert is_solved_jointly(simulation)  # the boxes are still moving
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
@@ -75,7 +75,7 @@ def test_resting_boxes_fall_asleep_while_robots_drive():
 
 
 def test_sleeping_box_wakes_when_hit_during_joint_solving():
-    simulation = driving_robots(box("wall", "1.2 8 0.1 0 0 0", "0.2 0.4 0.2", mass=0.2))
+    simulation = make_driving_robots(box("wall", "1.2 8 0.1 0 0 0", "0.2 0.4 0.2", mass=0.2))
     tree = int(simulation.model.body_treeid[simulation.model.body("wall::link").id])
     simulation.advance(51 * CHECK_PERIOD)
     assert not is_solved_jointly(simulation)  # the check has found the bodies at rest
@@ -92,7 +92,7 @@ def test_sleeping_box_wakes_when_hit_during_joint_solving():
 
 
 def test_reset_is_bitwise_reproducible():
-    simulation = driving_robots()
+    simulation = make_driving_robots()
     simulation.advance(NANOSECONDS_PER_SECOND // 2)
     first_positions = simulation.data.qpos.tobytes()
     simulation.reset()
@@ -105,7 +105,7 @@ def test_reset_is_bitwise_reproducible():
 
 
 def test_remaining_robots_are_solved_separately_after_delete():
-    simulation = driving_robots()
+    simulation = make_driving_robots()
     simulation.advance(5 * CHECK_PERIOD)
     assert is_solved_jointly(simulation)
     for number in range(4):

@@ -17,7 +17,7 @@ MILLISECOND = NANOSECONDS_PER_SECOND // 1000
 GRAVITY = 9.81
 
 
-def part(mass: float, moment: float, geometry: str = "", surface: str = "") -> str:
+def link_with_shape(mass: float, moment: float, geometry: str = "", surface: str = "") -> str:
     collision = f'<collision name="c"><geometry>{geometry}</geometry>{surface}</collision>' if geometry else ""
     return (
         f"<inertial><mass>{mass}</mass><inertia><ixx>{moment}</ixx><iyy>{moment}</iyy><izz>{moment}</izz></inertia>"
@@ -25,21 +25,22 @@ def part(mass: float, moment: float, geometry: str = "", surface: str = "") -> s
     )
 
 
-def friction(mu: float) -> str:
+def friction_element(mu: float) -> str:
     return f"<surface><friction><ode><mu>{mu}</mu><mu2>{mu}</mu2></ode></friction></surface>"
 
 
-def slope(angle: float, mu: float = 1.0) -> str:
+def slope_model(angle: float, mu: float = 1.0) -> str:
     """Return a plane that slopes down toward x."""
     return (
         '<model name="slope"><static>true</static><link name="l"><collision name="c"><geometry><plane>'
-        f"<normal>{sin(angle)} 0 {cos(angle)}</normal></plane></geometry>{friction(mu)}</collision></link></model>"
+        f"<normal>{sin(angle)} 0 {cos(angle)}</normal></plane></geometry>{friction_element(mu)}"
+        "</collision></link></model>"
     )
 
 
 def test_pendulum_has_textbook_period():
     length, angle = 0.5, 0.1
-    bob = part(1.0, 1e-6)
+    bob = link_with_shape(1.0, 1e-6)
     pendulum = f"""
     <model name="p"><pose>0 0 2 0 {angle} 0</pose>
       <link name="bob"><pose>0 0 -{length} 0 0 0</pose>{bob}</link>
@@ -66,7 +67,7 @@ def test_block_on_slope_sticks_or_slides(mu, slides):
     angle = atan(0.5)
     height = 0.05 / cos(angle)
     simulation = make_simulation(
-        slope(angle, mu), box("block", f"0 0 {height} 0 {angle} 0", "0.1 0.1 0.1", surface=friction(2.0))
+        slope_model(angle, mu), box("block", f"0 0 {height} 0 {angle} 0", "0.1 0.1 0.1", surface=friction_element(2.0))
     )
     simulation.advance(NANOSECONDS_PER_SECOND)
     x, _, z = simulation.model_pose("block")[:3]
@@ -80,9 +81,9 @@ def test_block_on_slope_sticks_or_slides(mu, slides):
 def test_ball_rolls_down_slope():
     angle, radius = 0.2, 0.1
     shape = f"<sphere><radius>{radius}</radius></sphere>"
-    link = part(1.0, 0.4 * radius**2, shape, friction(1.0))
+    link = link_with_shape(1.0, 0.4 * radius**2, shape, friction_element(1.0))
     ball = f'<model name="ball"><pose>0 0 {radius / cos(angle)} 0 0 0</pose><link name="l">{link}</link></model>'
-    simulation = make_simulation(slope(angle), ball)
+    simulation = make_simulation(slope_model(angle), ball)
     simulation.advance(NANOSECONDS_PER_SECOND)
     speed = simulation.link_velocity("ball::l")[0]
     assert hypot(*speed) == pytest.approx(5 / 7 * GRAVITY * sin(angle), rel=0.01)
@@ -104,7 +105,7 @@ def test_collision_conserves_momentum():
 
 def test_four_bar_linkage_stays_closed():
     bars = "".join(
-        f'<link name="{name}"><pose>{pose}</pose>{part(0.2, 1e-3)}</link>'
+        f'<link name="{name}"><pose>{pose}</pose>{link_with_shape(0.2, 1e-3)}</link>'
         for name, pose in (("crank", "0 0 1 0 0 0"), ("coupler", "0 0 1.3 0 0 0"), ("rocker", "0.5 0 1 0 0 0"))
     )
     joints = "".join(

@@ -22,7 +22,9 @@ def _slide(name: str, parent: str, axis: str) -> str:
     )
 
 
-def unicycle(lateral: float, longitudinal: float, filename: str = "gz-sim-wheel-slip-system", extra: str = "") -> str:
+def unicycle_model(
+    lateral: float, longitudinal: float, filename: str = "gz-sim-wheel-slip-system", extra: str = ""
+) -> str:
     """Return a wheel of 10 kg that stays upright, with a motor."""
     parts = _slide("along", "world", "1 0 0") + _slide("across", "along", "0 1 0") + _slide("up", "across", "0 0 1")
     slip = (
@@ -44,14 +46,14 @@ def unicycle(lateral: float, longitudinal: float, filename: str = "gz-sim-wheel-
     )
 
 
-def pushed(force: str) -> str:
+def pushing_plugin(force: str) -> str:
     return (
         '<plugin name="push" filename="gz-sim-apply-link-wrench-system"><persistent>'
         f"<entity_name>unicycle::up</entity_name><entity_type>link</entity_type><force>{force}</force></persistent></plugin>"
     )
 
 
-async def velocity_after(*parts: str, seconds: float = 2.0) -> tuple[float, float]:
+async def measure_velocity(*parts: str, seconds: float = 2.0) -> tuple[float, float]:
     """Return the velocity of the wheel forward and to the left, relative to the speed of its surface."""
     async with running_server(GROUND, *parts) as (server, _, log):
         server.advance(round(seconds * SECOND_NS))
@@ -65,24 +67,28 @@ async def velocity_after(*parts: str, seconds: float = 2.0) -> tuple[float, floa
 async def test_slip_ratio_is_compliance_times_force_ratio(filename):
     ratio = PUSHING_FORCE_N / NORMAL_FORCE_N
     for compliance in (0.0, 0.5, 1.0):
-        forward, left = await velocity_after(unicycle(0.0, compliance, filename), pushed(f"-{PUSHING_FORCE_N} 0 0"))
+        forward, left = await measure_velocity(
+            unicycle_model(0.0, compliance, filename), pushing_plugin(f"-{PUSHING_FORCE_N} 0 0")
+        )
         assert forward == pytest.approx(1.0 - compliance * ratio, rel=0.01)
         assert left == pytest.approx(0.0, abs=0.01)
-        forward, left = await velocity_after(unicycle(compliance, 0.0, filename), pushed(f"0 {PUSHING_FORCE_N} 0"))
+        forward, left = await measure_velocity(
+            unicycle_model(compliance, 0.0, filename), pushing_plugin(f"0 {PUSHING_FORCE_N} 0")
+        )
         assert left == pytest.approx(compliance * ratio, rel=0.02, abs=0.01)
         assert forward == pytest.approx(1.0, rel=0.01)
 
 
 async def test_wheel_that_does_not_turn_does_not_slip():
-    text = unicycle(1.0, 1.0).replace(f"<initial_velocity>{SPIN_RAD_S}", "<initial_velocity>0")
-    async with running_server(GROUND, text, pushed(f"0 {PUSHING_FORCE_N} 0")) as (server, _, __):
+    text = unicycle_model(1.0, 1.0).replace(f"<initial_velocity>{SPIN_RAD_S}", "<initial_velocity>0")
+    async with running_server(GROUND, text, pushing_plugin(f"0 {PUSHING_FORCE_N} 0")) as (server, _, __):
         server.advance(SECOND_NS)
         assert server.simulation.link_velocity("unicycle::up")[0] == pytest.approx((0.0, 0.0, 0.0), abs=0.01)
 
 
 async def test_slips_are_published_and_parameters_change_compliances():
-    text = unicycle(0.0, 0.5, "libgazebo_ros_wheel_slip.so")
-    async with running_server(GROUND, text, pushed(f"-{PUSHING_FORCE_N} 0 0")) as (server, graph, log):
+    text = unicycle_model(0.0, 0.5, "libgazebo_ros_wheel_slip.so")
+    async with running_server(GROUND, text, pushing_plugin(f"-{PUSHING_FORCE_N} 0 0")) as (server, graph, log):
         recording = Recording(graph, server.node, "/wheel_slip")
         server.advance(2 * SECOND_NS)
         await graph.settle()
@@ -109,9 +115,9 @@ async def test_slips_are_published_and_parameters_change_compliances():
 
 
 async def test_wheel_without_normal_force_and_missing_wheel_are_reported():
-    text = unicycle(0.0, 0.5).replace(f"<wheel_normal_force>{NORMAL_FORCE_N}</wheel_normal_force>", "")
+    text = unicycle_model(0.0, 0.5).replace(f"<wheel_normal_force>{NORMAL_FORCE_N}</wheel_normal_force>", "")
     async with running_server(GROUND, text) as (_, __, log):
         assert any("the wheel 'wheel' needs a joint, and a <wheel_radius>" in record.text for record in log)
-    text = unicycle(0.0, 0.5).replace('<wheel link_name="wheel">', "<tire>").replace("</wheel>", "</tire>")
+    text = unicycle_model(0.0, 0.5).replace('<wheel link_name="wheel">', "<tire>").replace("</wheel>", "</tire>")
     async with running_server(GROUND, text) as (_, __, log):
         assert any("<wheel> is missing" in record.text for record in log)

@@ -31,7 +31,7 @@ def record_messages(harness, message_type, topic):
     return messages
 
 
-def publisher(harness, message_type, topic):
+def create_publisher(harness, message_type, topic):
     return harness.node.create_publisher(get_message(message_type), topic, 10)
 
 
@@ -88,7 +88,7 @@ def test_malformed_bridge_file_is_rejected(text, message, tmp_path: Path):
 async def test_topic_of_same_name_is_not_duplicated(harness):
     scans = record_messages(harness, "sensor_msgs/msg/LaserScan", "/scan")
     ParameterBridge(harness.graph, NodeOptions(arguments=[SCAN]))
-    publisher(harness, "sensor_msgs/msg/LaserScan", "/scan").publish(get_message("sensor_msgs/msg/LaserScan")())
+    create_publisher(harness, "sensor_msgs/msg/LaserScan", "/scan").publish(get_message("sensor_msgs/msg/LaserScan")())
     await harness.graph.settle()
     assert len(scans) == 1
 
@@ -115,7 +115,9 @@ async def test_remapped_topic_is_bridged(harness):
     odometry = record_messages(harness, message_type, "/odom")
     argument = f"/model/mbot/odometry@{message_type}[gz.msgs.Odometry"
     ParameterBridge(harness.graph, NodeOptions(arguments=[argument], remappings=[("/model/mbot/odometry", "/odom")]))
-    publisher(harness, message_type, "/model/mbot/odometry").publish(get_message(message_type)(child_frame_id="base"))
+    create_publisher(harness, message_type, "/model/mbot/odometry").publish(
+        get_message(message_type)(child_frame_id="base")
+    )
     await harness.graph.settle()
     assert [message.child_frame_id for message in odometry] == ["base"]
 
@@ -125,7 +127,7 @@ async def test_bidirectional_bridge_does_not_loop(harness):
     ros, gz = record_messages(harness, message_type, "/ros"), record_messages(harness, message_type, "/gz")
     argument = f"/gz@{message_type}@gz.msgs.StringMsg"
     ParameterBridge(harness.graph, NodeOptions(arguments=[argument], remappings=[("/gz", "/ros")]))
-    to_ros, to_gz = publisher(harness, message_type, "/gz"), publisher(harness, message_type, "/ros")
+    to_ros, to_gz = create_publisher(harness, message_type, "/gz"), create_publisher(harness, message_type, "/ros")
     for number in range(3):
         to_ros.publish(get_message(message_type)(data=f"up {number}"))
         to_gz.publish(get_message(message_type)(data=f"down {number}"))
@@ -146,7 +148,7 @@ async def test_twist_stamped_is_converted_to_twist(harness, tmp_path: Path):
     ParameterBridge(harness.graph, harness.options({"config_file": str(path)}))
     stamped = get_message("geometry_msgs/msg/TwistStamped")()
     stamped.twist.linear.x = 0.25
-    publisher(harness, "geometry_msgs/msg/TwistStamped", "/cmd_vel").publish(stamped)
+    create_publisher(harness, "geometry_msgs/msg/TwistStamped", "/cmd_vel").publish(stamped)
     await harness.graph.settle()
     assert [message.linear.x for message in twists] == [0.25]
     assert harness.graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/TwistStamped"]
@@ -157,7 +159,7 @@ async def test_unknown_type_is_reported_and_other_topics_are_bridged(harness, lo
     ros = record_messages(harness, message_type, "/ros")
     arguments = ["/a@strange_msgs/msg/Thing[gz.msgs.Thing", f"/gz@{message_type}[gz.msgs.StringMsg"]
     ParameterBridge(harness.graph, NodeOptions(arguments=arguments, remappings=[("/gz", "/ros")]))
-    publisher(harness, message_type, "/gz").publish(get_message(message_type)(data="hello"))
+    create_publisher(harness, message_type, "/gz").publish(get_message(message_type)(data="hello"))
     await harness.graph.settle()
     assert logged("WARN") == ["/a is not bridged: there is no type strange_msgs/msg/Thing"]
     assert [message.data for message in ros] == ["hello"]
@@ -167,7 +169,7 @@ async def test_image_bridge_forwards_images(harness):
     message_type = "sensor_msgs/msg/Image"
     images = record_messages(harness, message_type, "/camera/color")
     bridge = ImageBridge(harness.graph, NodeOptions(arguments=["/camera"], remappings=[("/camera", "/camera/color")]))
-    publisher(harness, message_type, "/camera").publish(get_message(message_type)(width=4))
+    create_publisher(harness, message_type, "/camera").publish(get_message(message_type)(width=4))
     await harness.graph.settle()
     assert [message.width for message in images] == [4]
     bridge.close()
@@ -183,7 +185,7 @@ async def test_lazy_bridge_subscribes_only_while_it_has_subscribers(harness, tmp
         encoding="utf-8",
     )
     ParameterBridge(harness.graph, harness.options({"config_file": str(path)}))
-    source = publisher(harness, message_type, "/gz")
+    source = create_publisher(harness, message_type, "/gz")
     await harness.graph.settle()
     assert source.get_subscription_count() == 0
     subscription = harness.node.create_subscription(get_message(message_type), "/ros", lambda message: None, 10)
@@ -204,7 +206,7 @@ async def test_parameters_override_qos(harness):
         arguments=[argument], remappings=[("/model/robot/pose_static", "/tf_static")], parameters=overrides
     )
     ParameterBridge(harness.graph, options)
-    publisher(harness, message_type, "/model/robot/pose_static").publish(get_message(message_type)())
+    create_publisher(harness, message_type, "/model/robot/pose_static").publish(get_message(message_type)())
     await harness.graph.settle()
     messages = []
     latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -229,8 +231,8 @@ async def test_poses_are_converted_to_requested_type(harness, logged):
         )
     argument = "/many@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"
     ParameterBridge(harness.graph, NodeOptions(arguments=[argument], remappings=[("/many", "/PoseArray")]))
-    publisher(harness, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
-    publisher(harness, "tf2_msgs/msg/TFMessage", "/many").publish(
+    create_publisher(harness, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
+    create_publisher(harness, "tf2_msgs/msg/TFMessage", "/many").publish(
         get_message("tf2_msgs/msg/TFMessage")(transforms=[transform])
     )
     await harness.graph.settle()
@@ -254,7 +256,7 @@ async def test_gz_topic_names_can_be_expanded_with_namespace(harness):
         remappings=[("chatter", "/ros")],
     )
     ParameterBridge(harness.graph, options)
-    publisher(harness, message_type, "/demo/chatter").publish(get_message(message_type)(data="hello"))
+    create_publisher(harness, message_type, "/demo/chatter").publish(get_message(message_type)(data="hello"))
     await harness.graph.settle()
     assert [message.data for message in ros] == ["hello"]
 
@@ -264,7 +266,7 @@ async def test_compressed_images_are_published_while_subscribed(harness, encodin
     images = pytest.importorskip("PIL.Image")
     message_type = "sensor_msgs/msg/Image"
     ImageBridge(harness.graph, NodeOptions(arguments=["/camera"]))
-    camera = publisher(harness, message_type, "/camera")
+    camera = create_publisher(harness, message_type, "/camera")
     await harness.graph.settle()
     assert camera.get_subscription_count() == 0
     compressed = record_messages(harness, "sensor_msgs/msg/CompressedImage", "/camera/compressed")

@@ -70,18 +70,18 @@ class Simulator:
         return response
 
 
-def spawn_entity(harness: NodeHarness, *arguments: str, **options: Any) -> SpawnEntity:
+def start_spawn_entity(harness: NodeHarness, *arguments: str, **options: Any) -> SpawnEntity:
     return SpawnEntity(harness.graph, NodeOptions(arguments=list(arguments), **options))
 
 
-def create(harness: NodeHarness, *arguments: str, **parameters: Any) -> Create:
+def start_create(harness: NodeHarness, *arguments: str, **parameters: Any) -> Create:
     return Create(harness.graph, NodeOptions(arguments=list(arguments), parameters=parameters))
 
 
 async def test_published_description_is_spawned_at_pose(harness, logged):
     simulator = Simulator(harness)
     pose_arguments = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
-    node = spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", *pose_arguments)
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", *pose_arguments)
     await harness.graph.settle()
     assert simulator.spawned == []
     await harness.describe(ROBOT)
@@ -97,7 +97,7 @@ async def test_published_description_is_spawned_at_pose(harness, logged):
 async def test_latched_description_is_spawned(harness):
     simulator = Simulator(harness)
     await harness.describe(ROBOT)
-    node = create(harness, "-name", "mbot", "-topic", "robot_description", "-z=0.5")
+    node = start_create(harness, "-name", "mbot", "-topic", "robot_description", "-z=0.5")
     await harness.graph.settle()
     assert simulator.spawned[0].initial_pose.position.z == 0.5
     assert node.finished.result() == 0
@@ -105,7 +105,7 @@ async def test_latched_description_is_spawned(harness):
 
 async def test_only_first_description_is_spawned(harness):
     await harness.describe(ROBOT)
-    node = spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot")
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot")
     await harness.graph.settle()
     await harness.describe(ROBOT.replace("base", "other"))
     simulator = Simulator(harness)
@@ -116,7 +116,7 @@ async def test_only_first_description_is_spawned(harness):
 
 async def test_spawn_entity_waits_for_service_until_timeout(harness, logged):
     await harness.describe(ROBOT)
-    node = spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-timeout", "7")
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-timeout", "7")
     await harness.clock.advance(6.9)
     assert not node.finished.done()
     assert logged("INFO")[-1] == "Waiting for service /spawn_entity, timeout = 7"
@@ -129,7 +129,7 @@ async def test_rejected_spawn_exits_with_status_1(harness, logged):
     simulator = Simulator(harness)
     simulator.refuses = True
     await harness.describe(ROBOT)
-    node = spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot")
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot")
     await harness.graph.settle()
     assert node.finished.result() == 1
     assert logged("ERROR") == ["Spawning 'mbot' failed: Entity already exists"]
@@ -139,8 +139,8 @@ async def test_robot_and_gazebo_namespaces_are_applied(harness):
     simulator = Simulator(harness, "/sim")
     await harness.describe(ROBOT)
     arguments = ("-topic", "/robot_description", "-entity", "a", "-gazebo_namespace", "/sim")
-    spawn_entity(harness, *arguments, namespace="/one")
-    spawn_entity(harness, *arguments, "-robot_namespace", "two")
+    start_spawn_entity(harness, *arguments, namespace="/one")
+    start_spawn_entity(harness, *arguments, "-robot_namespace", "two")
     await harness.graph.settle()
     assert [request.robot_namespace for request in simulator.spawned] == ["/one", "two"]
 
@@ -155,12 +155,12 @@ async def test_entities_are_spawned_from_file_database_and_stdin(
     (tmp_path / "robot.urdf").write_text(ROBOT.replace("base", "package://p/m.dae"), encoding="utf-8")
     monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path / "models"))
     monkeypatch.setattr("sys.stdin", io.StringIO(ROBOT))
-    spawn_entity(harness, "-file", str(tmp_path / "robot.urdf"), "-entity", "a", "-package_to_model")
-    spawn_entity(harness, "-database", "box", "-entity", "b")
-    spawn_entity(harness, "-stdin", "-entity", "c")
-    create(harness, "-file", "model://box", "-name", "d")
-    create(harness, "--string", ROBOT, "--name=e")
-    create(harness, "-param", "text", "-name", "f", text=ROBOT)
+    start_spawn_entity(harness, "-file", str(tmp_path / "robot.urdf"), "-entity", "a", "-package_to_model")
+    start_spawn_entity(harness, "-database", "box", "-entity", "b")
+    start_spawn_entity(harness, "-stdin", "-entity", "c")
+    start_create(harness, "-file", "model://box", "-name", "d")
+    start_create(harness, "--string", ROBOT, "--name=e")
+    start_create(harness, "-param", "text", "-name", "f", text=ROBOT)
     await harness.graph.settle()
     box = (model / "model.sdf").read_text(encoding="utf-8")
     sent = {request.name: request.xml for request in simulator.spawned}
@@ -177,7 +177,7 @@ async def test_entities_are_spawned_from_file_database_and_stdin(
 async def test_unpause_option_unpauses_physics(harness):
     simulator = Simulator(harness)
     await harness.describe(ROBOT)
-    node = spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-unpause")
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-unpause")
     await harness.graph.settle()
     assert simulator.calls == ["unpause"]
     assert node.finished.result() == 0
@@ -186,7 +186,7 @@ async def test_unpause_option_unpauses_physics(harness):
 async def test_wait_option_waits_for_other_entity(harness):
     simulator = Simulator(harness)
     await harness.describe(ROBOT)
-    node = spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-wait", "table")
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-wait", "table")
     await harness.clock.advance(2.0)
     assert simulator.spawned == []
     simulator.names.append("table")
@@ -198,7 +198,7 @@ async def test_wait_option_waits_for_other_entity(harness):
 async def test_bound_entity_is_deleted_with_node(harness):
     simulator = Simulator(harness)
     await harness.describe(ROBOT)
-    node = spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-b")
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-b")
     await harness.graph.settle()
     assert not node.finished.done()
     node.close()
@@ -209,16 +209,16 @@ async def test_bound_entity_is_deleted_with_node(harness):
 async def test_create_allow_renaming_finds_free_name(harness):
     simulator = Simulator(harness)
     simulator.names = ["mbot", "mbot_0"]
-    create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "true")
-    create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "false")
-    create(harness, "-allow_renaming", "-string", ROBOT, "-name", "other")
+    start_create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "true")
+    start_create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "false")
+    start_create(harness, "-allow_renaming", "-string", ROBOT, "-name", "other")
     await harness.graph.settle()
     assert sorted(request.name for request in simulator.spawned) == ["mbot", "mbot_1", "other"]
 
 
 async def test_create_accepts_parameters_and_ignores_unknown_options(harness):
     simulator = Simulator(harness)
-    create(harness, "-wonder", "1", name="mbot", string=ROBOT, x=1.0, Y=0.0)
+    start_create(harness, "-wonder", "1", name="mbot", string=ROBOT, x=1.0, Y=0.0)
     await harness.graph.settle()
     assert (simulator.spawned[0].name, simulator.spawned[0].initial_pose.position.x) == ("mbot", 1.0)
 
@@ -252,7 +252,7 @@ def test_invalid_spawn_arguments_are_rejected(arguments, message):
 )
 async def test_create_reports_errors(harness, arguments, code):
     with pytest.raises(LinkwrightError) as error:
-        create(harness, *arguments)
+        start_create(harness, *arguments)
     assert error.value.diagnostics[0].code == code
 
 

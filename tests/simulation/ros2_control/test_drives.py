@@ -16,7 +16,7 @@ from linkwright.kinematics.planar import PlanarPose
 from tests.control.controllers.driving import stamped_twist
 from tests.simulation.ros2_control.test_plugin import PLUGINS, ControlledRobot
 from tests.simulation.test_ackermann import TRACK_WIDTH, WHEEL_RADIUS, WHEELBASE, car
-from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum
+from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum_robot
 from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND, mbot
 
@@ -24,7 +24,7 @@ TIMEOUT_S = 0.2
 
 
 @dataclass(frozen=True)
-class Robot:
+class RobotSetup:
     """A robot: its model, the command interface of each joint, and the controller with its parameters."""
 
     model: str
@@ -63,7 +63,7 @@ class Robot:
         )
 
 
-DIFFERENTIAL = Robot(
+DIFFERENTIAL = RobotSetup(
     "mbot",
     mbot(),
     dict.fromkeys(("left_joint", "right_joint"), "velocity"),
@@ -81,7 +81,7 @@ DIFFERENTIAL = Robot(
     "/base/odom",
 )
 _REAR, _STEERING = ["rear_right_joint", "rear_left_joint"], ["right_steering_joint", "left_steering_joint"]
-ACKERMANN = Robot(
+ACKERMANN = RobotSetup(
     "car",
     car(""),
     dict.fromkeys(_REAR, "velocity") | dict.fromkeys(_STEERING, "position"),
@@ -102,9 +102,9 @@ _CORNERS = {
     "rear_left": "back_left",
     "rear_right": "back_right",
 }
-MECANUM = Robot(
+MECANUM = RobotSetup(
     "robot",
-    mecanum().partition("<plugin")[0] + "</model>",
+    mecanum_robot().partition("<plugin")[0] + "</model>",
     {f"{corner}_joint": "velocity" for corner in _CORNERS.values()},
     "mecanum_drive_controller/MecanumDriveController",
     {
@@ -116,13 +116,15 @@ MECANUM = Robot(
         "reference_timeout": TIMEOUT_S,
     },
 )
-ALL = pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"])
+all_drives = pytest.mark.parametrize(
+    "robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"]
+)
 
 
-class Drive(ControlledRobot):
+class DrivenRobot(ControlledRobot):
     """A robot that is driven in a world."""
 
-    def __init__(self, server: Any, graph: Any, robot: Robot) -> None:
+    def __init__(self, server: Any, graph: Any, robot: RobotSetup) -> None:
         super().__init__(server, graph)
         self.robot = robot
         self._publisher = self.node.create_publisher("geometry_msgs/msg/TwistStamped", robot.command, 10)
@@ -154,14 +156,14 @@ class Drive(ControlledRobot):
 
 
 @asynccontextmanager
-async def start_drive(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
+async def start_drive(robot: RobotSetup, folder: Path) -> AsyncIterator[DrivenRobot]:
     """Run a world with the robot at rest, and its controller active."""
     file = folder / "controllers.yaml"
     file.write_text(robot.controllers())
     filename, name, hardware = PLUGINS["gz"]
     plugin = f'<plugin filename="{filename}" name="{name}"><parameters>{file}</parameters></plugin>'
     async with running_server(GROUND, robot.text.replace("</model>", f"{plugin}</model>")) as (server, graph, log):
-        drive = Drive(server, graph, robot)
+        drive = DrivenRobot(server, graph, robot)
         await drive.describe(robot.description(hardware))
         await drive.start("base")
         await drive.advance(0.5)
@@ -169,7 +171,7 @@ async def start_drive(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
         assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
 
 
-@ALL
+@all_drives
 async def test_odometry_matches_truth_over_five_meters(robot, tmp_path):
     async with start_drive(robot, tmp_path) as drive:
         await drive.drive(5.0, 1.0)
@@ -189,7 +191,7 @@ async def test_odometry_matches_truth_on_arc(robot, tmp_path):
         assert (odometry.x, odometry.y, odometry.yaw) == pytest.approx((truth.x, truth.y, truth.yaw), abs=0.04)
 
 
-@ALL
+@all_drives
 async def test_robot_stops_when_commands_stop(robot, tmp_path):
     async with start_drive(robot, tmp_path) as drive:
         await drive.drive(1.0, 0.5)

@@ -12,7 +12,7 @@ SECOND_NS = 1_000_000_000
 BODY = "<inertial><mass>1</mass><inertia><ixx>.1</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial>"
 
 
-def wheel(name: str, y: float, axis: str) -> str:
+def wheel_model(name: str, y: float, axis: str) -> str:
     """Return a wheel on a fixed axle."""
     return (
         f'<link name="{name}"><pose>0 {y} 0 0 0 0</pose>{BODY}</link><joint name="{name}_axle" type="revolute">'
@@ -20,20 +20,20 @@ def wheel(name: str, y: float, axis: str) -> str:
     )
 
 
-def gears(ratio: float, axis: str = "1 0 0", gearbox_first: bool = False) -> str:
+def geared_wheels(ratio: float, axis: str = "1 0 0", gearbox_first: bool = False) -> str:
     gearbox = (
         '<joint name="gears" type="gearbox"><parent>a</parent><child>b</child>'
         f"<gearbox_ratio>{ratio}</gearbox_ratio><gearbox_reference_body>world</gearbox_reference_body>"
         "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>1 0 0</xyz></axis2></joint>"
     )
-    wheels = wheel("a", 0, "1 0 0") + wheel("b", 1, axis)
+    wheels = wheel_model("a", 0, "1 0 0") + wheel_model("b", 1, axis)
     return f'<model name="m">{gearbox + wheels if gearbox_first else wheels + gearbox}</model>'
 
 
 @pytest.mark.parametrize("gearbox_first", [True, False])
 @pytest.mark.parametrize(("axis", "ratio"), [("1 0 0", 1.5), ("-1 0 0", -1.5)])
 def test_gearbox_child_turns_by_negative_ratio(axis, ratio, gearbox_first):
-    simulation = make_simulation(gears(-1.5, axis, gearbox_first))
+    simulation = make_simulation(geared_wheels(-1.5, axis, gearbox_first))
     simulation.push_joint("m::a_axle", 1.0)
     simulation.advance(SECOND_NS)
     angle, _ = simulation.joint_state("m::a_axle")

@@ -164,7 +164,7 @@ async def test_ros_1_laser_plugins_publish_their_message_types(library: str):
         assert not log
 
 
-def rows_of(cloud) -> np.ndarray:
+def point_rows(cloud) -> np.ndarray:
     """Return the points of a cloud as an array with the names of its fields."""
     types = {4: np.uint16, 7: np.float32}
     layout = np.dtype(
@@ -192,7 +192,7 @@ async def test_velodyne_points_have_ring():
         log,
     ):
         (message,) = await last_messages(server, graph, "/points")
-        rows = rows_of(message)
+        rows = point_rows(message)
         assert (message.height, message.width, message.is_dense) == (1, 2, True)
         assert rows["ring"].tolist() == [0, 1]
         assert rows["z"].tolist() == pytest.approx([-2 * tan(0.1), 2 * tan(0.1)])
@@ -209,7 +209,7 @@ async def test_organized_velodyne_cloud_has_row_per_firing():
         log,
     ):
         (message,) = await last_messages(server, graph, "/points")
-        rows = rows_of(message).reshape(message.height, message.width)
+        rows = point_rows(message).reshape(message.height, message.width)
         assert (message.height, message.width, message.is_dense) == (3, 2, False)
         assert rows["ring"].tolist() == [[0, 1]] * 3
         assert np.isfinite(rows["x"]).tolist() == [[False, False], [True, True], [False, False]]
@@ -375,7 +375,7 @@ async def test_force_torque_sensors_publish_wrench():
         assert not log
 
 
-def pixels_of(message) -> np.ndarray:
+def image_pixels(message) -> np.ndarray:
     channels = message.step // message.width
     return np.frombuffer(bytes(message.data), np.uint8).reshape(message.height, message.width, channels)
 
@@ -387,7 +387,7 @@ async def test_classic_camera_publishes_image_and_camera_info():
         image, info = await last_messages(server, graph, "/front/image_raw", "/front/camera_info")
         assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
         assert image.header.frame_id == info.header.frame_id == "optical"
-        red = pixels_of(image)[24, 32]
+        red = image_pixels(image)[24, 32]
         assert red[0] > 50
         assert red[1] == red[2] == 0
         focal = 64 / (2 * tan(pi / 4))
@@ -489,9 +489,9 @@ async def test_segmentation_camera_shows_labels_and_background():
     text = robot_with(sensor("segmentation_camera", f"<topic>seg</topic>{CAMERA}"))
     async with running_server(*world, text) as (server, graph, _):
         maps, colored = await last_messages(server, graph, "/seg/labels_map", "/seg/colored_map")
-        assert set(pixels_of(maps).reshape(-1).tolist()) == {0, 7}
-        assert pixels_of(colored)[24, 24].any()
-        assert not pixels_of(colored)[0, 0].any()
+        assert set(image_pixels(maps).reshape(-1).tolist()) == {0, 7}
+        assert image_pixels(colored)[24, 24].any()
+        assert not image_pixels(colored)[0, 0].any()
 
 
 async def test_bounding_boxes_enclose_labeled_models():
@@ -506,7 +506,7 @@ async def test_bounding_boxes_enclose_labeled_models():
         left, right = bounding_boxes["7"], bounding_boxes["9"]
         assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
         assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
-        assert ((pixels_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
+        assert ((image_pixels(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
 
 
 async def test_image_noise_is_reproducible_for_same_seed():
@@ -518,7 +518,7 @@ async def test_image_noise_is_reproducible_for_same_seed():
     for _ in range(2):
         async with running_server(WALL, text) as (server, graph, _log):
             (image,) = await last_messages(server, graph, "/sensor/image_raw")
-            images.append(pixels_of(image).astype(float))
+            images.append(image_pixels(image).astype(float))
     assert (images[0] == images[1]).all()
     assert np.std(images[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.nodes.conftest import clock, graph, harness, log, logged  # noqa: F401  # fixtures
-from tests.speech.nodes.fakes import ENTRY, CommanderHarness, ScriptedEngine
+from tests.speech.nodes.fakes import ENGINE_ENTRY, CommanderHarness, ScriptedEngine
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ async def start_commander(harness):  # noqa: F811
 
 @pytest.fixture
 def engine(monkeypatch):
-    monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"told": ENTRY})
+    monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"told": ENGINE_ENTRY})
     ScriptedEngine.used_options.clear()
     ScriptedEngine.finished.clear()
     ScriptedEngine.results_at_end.clear()

@@ -21,7 +21,7 @@ from tests.waiting import eventually
 
 STRING, BOOL = get_message("std_msgs/msg/String"), get_message("std_msgs/msg/Bool")
 TWIST = get_message("geometry_msgs/msg/Twist")
-ENTRY = extensions.EntryPoint("told", f"{__name__}:ScriptedEngine", "tests")
+ENGINE_ENTRY = extensions.EntryPoint("told", f"{__name__}:ScriptedEngine", "tests")
 
 
 class ScriptedEngine(SpeechEngine):
@@ -56,11 +56,11 @@ class ScriptedEngine(SpeechEngine):
         return tuple(self.results_at_end)
 
 
-def final(text: str, confidence: float = 1.0, start: float = 0.0, nearest: str = "") -> Heard:
+def final_result(text: str, confidence: float = 1.0, start: float = 0.0, nearest: str = "") -> Heard:
     return Heard(text, confidence, True, start, start + 1.0, nearest)
 
 
-def partial(text: str, start: float = 0.0) -> Heard:
+def partial_result(text: str, start: float = 0.0) -> Heard:
     return Heard(text, 0.0, False, start, start + 0.5)
 
 
@@ -102,7 +102,7 @@ class CommanderHarness:
 
     async def finish_results(self) -> None:
         """Press the button once more, and wait until all results are processed."""
-        ScriptedEngine.results_at_end[:] = [partial("the end")]
+        ScriptedEngine.results_at_end[:] = [partial_result("the end")]
         count = len(self.texts_by_topic["partial_text"])
         await self.hold(True)
         await self.hold(False)

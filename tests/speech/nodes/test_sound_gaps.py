@@ -8,40 +8,40 @@ from linkwright.speech.nodes.sound_gaps import SampleStamps, SoundGaps
 from linkwright.speech.sound.samples import BLOCK
 
 SECOND_NS = 10**9
-LENGTH = SECOND_NS // 10
+BLOCK_NS = SECOND_NS // 10
 
 
-def stamps_of(arrivals):
+def stamp_blocks(arrivals):
     """Return the stamps of blocks of a tenth of a second that arrived at these seconds."""
     stamps = SampleStamps()
     return [stamps.stamp(BLOCK, round(arrival * SECOND_NS)) for arrival in arrivals]
 
 
-def gaps_of(stamps):
+def find_gaps(stamps):
     gaps = SoundGaps()
     return [gaps.measure_gap(stamp, BLOCK) for stamp in stamps]
 
 
 def test_stamps_count_samples_despite_jitter():
     delays = np.random.default_rng(1).uniform(0, 0.08, 200)
-    stamps = stamps_of(10.0 + 0.1 * np.arange(200) + delays)
-    assert np.max(np.abs(np.diff(stamps) - LENGTH)) <= 0.01 * LENGTH
-    assert not any(gaps_of(stamps))
+    stamps = stamp_blocks(10.0 + 0.1 * np.arange(200) + delays)
+    assert np.max(np.abs(np.diff(stamps) - BLOCK_NS)) <= 0.01 * BLOCK_NS
+    assert not any(find_gaps(stamps))
 
 
 def test_stalled_source_is_not_a_gap():
     arrivals = [10.0 + 0.1 * max(index, 40) if index >= 10 else 10.0 + 0.1 * index for index in range(100)]
-    assert not any(gaps_of(stamps_of(arrivals)))
+    assert not any(find_gaps(stamp_blocks(arrivals)))
 
 
 def test_stamps_follow_the_clock():
-    stamps = stamps_of(10.0 + 0.1005 * np.arange(2000))  # the clock of the microphone is slow by 0.5 %
+    stamps = stamp_blocks(10.0 + 0.1005 * np.arange(2000))  # the clock of the microphone is slow by 0.5 %
     assert abs(stamps[-1] - (10.0 + 0.1005 * 1999 - 0.1) * SECOND_NS) < 0.01 * SECOND_NS
 
 
 def test_lost_blocks_are_reported_as_gap():
-    stamps = stamps_of(10.0 + 0.1 * np.arange(20))
-    gap_list = gaps_of(stamps[:10] + stamps[12:])
+    stamps = stamp_blocks(10.0 + 0.1 * np.arange(20))
+    gap_list = find_gaps(stamps[:10] + stamps[12:])
     assert np.allclose(gap_list, [0.0] * 10 + [0.2] + [0.0] * 7, atol=0.005)
 
 
@@ -49,7 +49,7 @@ def test_restarted_stream_has_no_gap():
     stamps = SampleStamps()
     first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND_NS)) for index in range(10)]
     stamps.restart()
-    assert stamps.stamp(BLOCK, 15 * SECOND_NS) == 15 * SECOND_NS - LENGTH
+    assert stamps.stamp(BLOCK, 15 * SECOND_NS) == 15 * SECOND_NS - BLOCK_NS
     gaps = SoundGaps()
     assert not any(gaps.measure_gap(stamp, BLOCK) for stamp in first)
     gaps.restart()
@@ -98,17 +98,17 @@ def test_gap_is_reported_immediately_after_restart():
     assert not any(gaps.measure_gap(round((10.0 + 0.1 * index) * SECOND_NS), BLOCK) for index in range(5))
     gaps.restart()
     assert gaps.measure_gap(20 * SECOND_NS, BLOCK) == 0.0
-    assert gaps.measure_gap(20 * SECOND_NS + 3 * LENGTH, BLOCK) == 0.2
+    assert gaps.measure_gap(20 * SECOND_NS + 3 * BLOCK_NS, BLOCK) == 0.2
 
 
 def test_arrival_stamps_with_jitter_have_no_gaps():
     delays = np.random.default_rng(2).uniform(0, 0.2, 200)
-    assert not any(gaps_of([round((10.0 + 0.1 * index + delays[index]) * SECOND_NS) for index in range(200)]))
+    assert not any(find_gaps([round((10.0 + 0.1 * index + delays[index]) * SECOND_NS) for index in range(200)]))
 
 
 def test_clock_jumps_and_stalls_are_not_gaps():
-    stamps = stamps_of(
+    stamps = stamp_blocks(
         [10.0 + 0.1 * index for index in range(20)] + [11.9] * 40 + [3.0 + 0.1 * index for index in range(20)]
     )
-    assert not any(gaps_of(stamps))
-    assert stamps_of([0.0, 0.0]) == [0, LENGTH - LENGTH // 100]
+    assert not any(find_gaps(stamps))
+    assert stamp_blocks([0.0, 0.0]) == [0, BLOCK_NS - BLOCK_NS // 100]

@@ -13,13 +13,13 @@ from linkwright.graph.actions.goal import CancelResponse, GoalEvent
 from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.messages import get_action, get_message, get_service
 from linkwright.speech.nodes.audio_messages import audio_stamped
-from tests.speech.nodes.fakes import STRING, final, partial
+from tests.speech.nodes.fakes import STRING, final_result, partial_result
 from tests.waiting import eventually
 
 ODOMETRY = get_message("nav_msgs/msg/Odometry")
 
 
-def commands(tmp_path, text):
+def write_command_file(tmp_path, text):
     file = tmp_path / "commands.yaml"
     file.write_text(text, encoding="utf-8")
     return str(file)
@@ -171,7 +171,7 @@ async def test_sound_is_used_only_while_button_is_held(engine, start_commander):
     robot = start_commander(engine="told")
     await robot.process()
     await robot.hold(True)
-    await robot.process(partial("for"), final("forward"))
+    await robot.process(partial_result("for"), final_result("forward"))
     assert robot.texts_by_topic["partial_text"] == ["for"]
     assert robot.texts_by_topic["command"] == ["forward"]
     assert robot.speed == (0.2, 0.0, 0.0)
@@ -181,14 +181,14 @@ async def test_sound_is_used_only_while_button_is_held(engine, start_commander):
 
 async def test_open_listening_needs_no_button(engine, start_commander):
     robot = start_commander(engine="told", open_listening=True)
-    await robot.process(final("forward"))
+    await robot.process(final_result("forward"))
     assert robot.texts_by_topic["command"] == ["forward"]
 
 
 async def test_uncertain_command_is_not_executed(engine, start_commander):
     robot = start_commander(engine="told", open_listening=True, confidence=0.7)
-    await robot.process(final("forward", 0.6))
-    await robot.process(final("", 0.9))
+    await robot.process(final_result("forward", 0.6))
+    await robot.process(final_result("", 0.9))
     assert robot.texts_by_topic["command"] == []
     assert robot.velocities == []
 
@@ -197,7 +197,7 @@ async def test_uncertain_command_is_not_executed(engine, start_commander):
 async def test_uncertain_command_during_press_is_answered(engine, start_commander, asked_for):
     robot = start_commander(engine="told", confidence=asked_for, language="zh")
     await robot.hold(True)
-    engine.results_at_end.append(final("前进", 0.6 * asked_for))
+    engine.results_at_end.append(final_result("前进", 0.6 * asked_for))
     await robot.hold(False)
     await eventually(lambda: robot.texts_by_topic["response"])
     assert robot.texts_by_topic["response"] == ["我不确定听到的是“前进”，请再说一遍"]
@@ -208,16 +208,16 @@ async def test_uncertain_command_during_press_is_answered(engine, start_commande
 async def test_very_uncertain_result_is_not_answered(engine, start_commander):
     robot = start_commander(engine="told")
     await robot.hold(True)
-    await robot.process(final("forward", 0.2), final("", 0.4))
+    await robot.process(final_result("forward", 0.2), final_result("", 0.4))
     assert robot.texts_by_topic["response"] == []
 
 
 async def test_open_listening_answers_uncertain_command_only_with_button(engine, start_commander):
     robot = start_commander(engine="told", open_listening=True)
-    await robot.process(final("forward", 0.4))
+    await robot.process(final_result("forward", 0.4))
     assert robot.texts_by_topic["response"] == []
     await robot.hold(True)
-    await robot.process(final("forward", 0.4, start=2.0))
+    await robot.process(final_result("forward", 0.4, start=2.0))
     assert robot.texts_by_topic["response"] == ["I am not sure that I heard 'forward', please repeat"]
 
 
@@ -226,15 +226,15 @@ async def test_command_with_gap_is_asked_again_but_stop_is_executed(engine, star
     await robot.hold(True)
     for index in range(5):
         await robot.process(stamp=10.0 + 0.1 * index)
-    await robot.process(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
+    await robot.process(final_result("forward", start=-0.5), stamp=11.0)  # half a second is missing
     assert robot.texts_by_topic["text"] == ["forward"]
     assert robot.texts_by_topic["command"] == []
     assert robot.texts_by_topic["response"] == ["I did not hear all of that, please repeat"]
-    await robot.process(final("forward", start=0.8), stamp=11.1)
+    await robot.process(final_result("forward", start=0.8), stamp=11.1)
     assert robot.texts_by_topic["command"] == ["forward"]
     for index in range(3):
         await robot.process(stamp=11.2 + 0.1 * index)
-    await robot.process(final("stop", start=0.5), stamp=13.0)
+    await robot.process(final_result("stop", start=0.5), stamp=13.0)
     assert robot.texts_by_topic["command"] == ["forward", "stop"]
     assert robot.speed == (0.0, 0.0, 0.0)
 
@@ -244,7 +244,7 @@ async def test_certain_command_with_small_gap_is_executed(engine, start_commande
     await robot.hold(True)
     for index in range(5):
         await robot.process(stamp=10.0 + 0.1 * index)
-    await robot.process(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
+    await robot.process(final_result("forward"), final_result(""), stamp=10.6)  # a tenth of a second is missing
     assert robot.texts_by_topic["command"] == ["forward"]
     assert robot.texts_by_topic["response"][-1] == "I did not hear all of that, please repeat"
 
@@ -256,16 +256,16 @@ async def test_next_press_has_no_gap(engine, start_commander):
         await robot.process(stamp=10.0 + 0.1 * index)
     await robot.hold(False)
     await robot.hold(True)
-    await robot.process(final("forward", start=0.0), stamp=15.0)
+    await robot.process(final_result("forward", start=0.0), stamp=15.0)
     assert robot.texts_by_topic["command"] == ["forward"]
 
 
 async def test_partial_stop_is_executed_once(engine, start_commander):
     robot = start_commander(engine="told", open_listening=True)
-    await robot.process(final("forward"))
-    await robot.process(partial("[unk] stop", start=2.0))
+    await robot.process(final_result("forward"))
+    await robot.process(partial_result("[unk] stop", start=2.0))
     assert robot.speed == (0.0, 0.0, 0.0)
-    await robot.process(partial("stop", start=2.0), final("stop", start=2.0))
+    await robot.process(partial_result("stop", start=2.0), final_result("stop", start=2.0))
     assert robot.texts_by_topic["command"] == ["forward", "stop"]
 
 
@@ -273,17 +273,17 @@ async def test_stop_is_executed_again_after_new_motion(engine, start_commander):
     robot = start_commander(engine="told", open_listening=True)
     for _ in range(2):
         await robot.send_text("forward")
-        await robot.process(partial("stop"))
+        await robot.process(partial_result("stop"))
         assert robot.speed == (0.0, 0.0, 0.0)
 
 
 async def test_rest_of_utterance_after_stop_is_ignored(engine, start_commander):
     robot = start_commander(engine="told", open_listening=True)
-    await robot.process(final("left"))
-    await robot.process(partial("stop"), final("forward"))
+    await robot.process(final_result("left"))
+    await robot.process(partial_result("stop"), final_result("forward"))
     assert robot.texts_by_topic["command"] == ["left", "stop"]
     await robot.hold(True)
-    await robot.process(partial("go to the stop"), final("go to the stop sign"))
+    await robot.process(partial_result("go to the stop"), final_result("go to the stop sign"))
     assert robot.texts_by_topic["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
 
 
@@ -297,16 +297,16 @@ async def test_engine_problem_is_logged(engine, start_commander, logged):
 
 async def test_uncertain_stop_stops_moving_robot(engine, start_commander):
     robot = start_commander(engine="told", open_listening=True)
-    await robot.process(final("stop", 0.1))
+    await robot.process(final_result("stop", 0.1))
     assert robot.texts_by_topic["command"] == []
-    await robot.process(final("forward", start=2.0))
-    await robot.process(final("stop", 0.1, start=4.0))
+    await robot.process(final_result("forward", start=2.0))
+    await robot.process(final_result("stop", 0.1, start=4.0))
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
 async def test_lost_audio_source_stops_robot(engine, harness, start_commander):
     robot = start_commander(engine="told", open_listening=True)
-    await robot.process(final("forward"))
+    await robot.process(final_result("forward"))
     robot.microphone_node.destroy_node()
     await harness.clock.advance(1.0)
     assert robot.speed == (0.0, 0.0, 0.0)
@@ -322,7 +322,7 @@ async def test_unknown_engine_ends_node(engine, start_commander, logged):
 
 async def test_failing_engine_stops_robot_and_ends_node(engine, start_commander, logged):
     robot = start_commander(engine="told", open_listening=True)
-    await robot.process(final("forward"))
+    await robot.process(final_result("forward"))
     robot.sound.publish(audio_stamped(b"\xff\x7f", robot.harness.node.get_clock().now().to_msg()))
     await eventually(robot.commander.finished.done)
     await robot.harness.graph.settle()
@@ -344,7 +344,7 @@ commands:
 
 @pytest.mark.parametrize(("answer", "count"), [("yes", 1), ("no", 0), ("forward", 0), (None, 0)])
 async def test_confirmation_is_required_before_command(harness, start_commander, tmp_path, answer, count):
-    robot = start_commander(commands_file=commands(tmp_path, QUESTION))
+    robot = start_commander(commands_file=write_command_file(tmp_path, QUESTION))
     reset = []
     harness.node.create_subscription(STRING, "/reset", reset.append, 10)
     assert await robot.send_text("reset") == "are you sure?"
@@ -369,7 +369,7 @@ commands:
   stop: {phrases: {en: stop, zh: 停}, stop: true, response: {en: stopped, zh: 停下了}}
   forward: {phrases: {en: [forward], zh: [前进]}, drive: {x: 1}, response: {en: I drive, zh: 我走}}
 """
-    robot = start_commander(commands_file=commands(tmp_path, text))
+    robot = start_commander(commands_file=write_command_file(tmp_path, text))
     assert await robot.send_text("前进") == "我走"
     assert await robot.send_text("sing") == "我没听懂“sing”"
     assert await robot.send_text("停") == "停下了"
@@ -413,7 +413,7 @@ class Navigator:
 
 async def test_go_to_place_sends_goal_and_reports_arrival(harness, start_commander, tmp_path):
     navigator = Navigator(harness)
-    robot = start_commander(commands_file=commands(tmp_path, PLACE_FILE))
+    robot = start_commander(commands_file=write_command_file(tmp_path, PLACE_FILE))
     await harness.graph.settle()
     assert await robot.send_text("去厨房") == "去厨房"
     (goal,) = navigator.goals
@@ -429,7 +429,7 @@ async def test_go_to_place_sends_goal_and_reports_arrival(harness, start_command
 @pytest.mark.parametrize("text", ["stop", "forward"])
 async def test_stop_or_other_command_cancels_goal(harness, start_commander, tmp_path, text):
     navigator = Navigator(harness)
-    robot = start_commander(commands_file=commands(tmp_path, PLACE_FILE))
+    robot = start_commander(commands_file=write_command_file(tmp_path, PLACE_FILE))
     await harness.graph.settle()
     await robot.send_text("go to the kitchen")
     await robot.send_text(text)
@@ -437,7 +437,7 @@ async def test_stop_or_other_command_cancels_goal(harness, start_commander, tmp_
 
 
 async def test_missing_action_server_is_reported(start_commander, tmp_path):
-    robot = start_commander(commands_file=commands(tmp_path, PLACE_FILE))
+    robot = start_commander(commands_file=write_command_file(tmp_path, PLACE_FILE))
     assert await robot.send_text("go to the kitchen") == "I cannot do it: no node serves 'navigate_to_pose'"
 
 
@@ -454,14 +454,14 @@ async def test_service_response_is_spoken(harness, start_commander):
     await eventually(lambda: robot.texts_by_topic["response"][-1] == "a red ball")
 
 
-def clients(harness):
+def voice_client_names(harness):
     return [endpoint.name for endpoint in harness.graph.endpoints() if endpoint.kind is EndpointKind.CLIENT]
 
 
 async def test_missing_service_does_not_delay_other_commands(harness, start_commander):
     robot = start_commander()
     await harness.graph.settle()
-    assert [client for client in clients(harness) if "/_action/" not in client] == []
+    assert [client for client in voice_client_names(harness) if "/_action/" not in client] == []
     assert await robot.send_text("what do you see") == "I cannot do it: no node serves '/vision/describe/en'"
     service_type = get_service("std_srvs/srv/Trigger")
     harness.node.create_service(
@@ -471,7 +471,7 @@ async def test_missing_service_does_not_delay_other_commands(harness, start_comm
     )
     await robot.send_text("what do you see")
     await eventually(lambda: robot.texts_by_topic["response"][-1] == "a red ball")
-    assert "/vision/describe/en" not in clients(harness)
+    assert "/vision/describe/en" not in voice_client_names(harness)
 
 
 async def test_service_of_other_type_is_not_called(harness, start_commander):
@@ -515,7 +515,7 @@ class FakeProcess:
 async def test_launch_file_is_started_without_shell_and_ended_by_stop(start_commander, tmp_path, monkeypatch):
     FakeProcess.started.clear()
     monkeypatch.setattr("linkwright.speech.nodes.requests.subprocess.Popen", FakeProcess)
-    robot = start_commander(commands_file=commands(tmp_path, LAUNCH))
+    robot = start_commander(commands_file=write_command_file(tmp_path, LAUNCH))
     await robot.send_text("follow the red ball")
     (process,) = FakeProcess.started
     assert process.command[-6:] == ["linkwright", "launch", "p", "f.launch.py", "target:=red ball", "k:=2"]
@@ -542,6 +542,6 @@ async def test_go_to_object_publishes_target_and_stop(harness, start_commander):
 
 async def test_invalid_command_file_ends_node(start_commander, tmp_path, logged):
     with pytest.raises(LinkwrightError) as error:
-        start_commander(commands_file=commands(tmp_path, "commands: {a: {phrases: b}}"))
+        start_commander(commands_file=write_command_file(tmp_path, "commands: {a: {phrases: b}}"))
     assert error.value.diagnostics[0].code == "VOICE302"
     assert logged("FATAL") == ["the command 'a' has no action"]

@@ -11,7 +11,7 @@ from onnx import TensorProto, helper, numpy_helper
 STRIDES = (8, 16, 32)
 
 
-def columns(
+def write_column_network(
     path: Path,
     classes: int = 3,
     *,
@@ -58,10 +58,10 @@ def columns(
         nodes.append(helper.make_node("Conv", ["images", "wm"], ["output1"], strides=[4, 4], kernel_shape=[4, 4]))
         outputs.append(_value("output1", None, is_half_precision))
     shape = [batch, 3, *(size or ("height", "width"))]
-    return saved(path, nodes, [_value("images", shape, is_half_precision)], outputs, weights, metadata)
+    return save_network(path, nodes, [_value("images", shape, is_half_precision)], outputs, weights, metadata)
 
 
-def constant(path: Path, array, metadata=None, shape=(1, 3, 96, 128), names=("images",)) -> Path:
+def write_constant_network(path: Path, array, metadata=None, shape=(1, 3, 96, 128), names=("images",)) -> Path:
     """Write a network with a constant output."""
     weights = [numpy_helper.from_array(np.asarray(array), "numbers"), numpy_helper.from_array(np.float32(0), "zero")]
     nodes = [
@@ -70,10 +70,10 @@ def constant(path: Path, array, metadata=None, shape=(1, 3, 96, 128), names=("im
         helper.make_node("Add", ["numbers", "nothing"], ["output0"]),
     ]
     inputs = [_value(name, list(shape), False) for name in names]
-    return saved(path, nodes, inputs, [_value("output0", None, False)], weights, metadata)
+    return save_network(path, nodes, inputs, [_value("output0", None, False)], weights, metadata)
 
 
-def saved(path, nodes, inputs, outputs, weights, metadata) -> Path:
+def save_network(path, nodes, inputs, outputs, weights, metadata) -> Path:
     graph = helper.make_graph(nodes, "small", inputs, outputs, weights)
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8)
     helper.set_model_props(model, metadata or {})

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from linkwright.vision.detectors.suppression import non_maximum_suppression
 
 
-def slow_suppression(boxes, scores, classes, iou, max_count):
+def suppress_slowly(boxes, scores, classes, iou, max_count):
     selected = []
     for index in sorted(range(len(scores)), key=lambda index: -scores[index]):
         left, top, right, bottom = boxes[index]
@@ -35,5 +35,5 @@ def test_suppression_matches_slow_reference(rows, iou, max_detections):
     boxes = np.array([row[0] for row in rows], np.float32).reshape(-1, 4)
     scores = np.array([row[1] / 8 for row in rows], np.float32)
     classes = np.array([row[2] for row in rows], np.int32)
-    expected = slow_suppression(boxes.tolist(), scores.tolist(), classes.tolist(), iou, max_detections)
+    expected = suppress_slowly(boxes.tolist(), scores.tolist(), classes.tolist(), iou, max_detections)
     assert non_maximum_suppression(boxes, scores, classes, iou, max_detections).tolist() == expected

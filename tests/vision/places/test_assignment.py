@@ -10,7 +10,7 @@ import pytest
 from linkwright.vision.places.assignment import assign
 
 
-def lowest_cost(costs, max_cost):
+def find_lowest_cost(costs, max_cost):
     """Return the cost of the best assignment by exhaustive search.
 
     An unassigned element costs `max_cost`.
@@ -30,7 +30,7 @@ def test_assignment_has_minimum_cost(seed):
     assert len({row for row, _ in pairs}) == len({column for _, column in pairs}) == len(pairs)
     assert all(costs[pair] <= 0.8 for pair in pairs)
     unassigned_count = len(costs) - len(pairs)
-    assert sum(costs[pair] for pair in pairs) + 0.8 * unassigned_count == pytest.approx(lowest_cost(costs, 0.8))
+    assert sum(costs[pair] for pair in pairs) + 0.8 * unassigned_count == pytest.approx(find_lowest_cost(costs, 0.8))
 
 
 def test_empty_or_impossible_assignment_is_empty():

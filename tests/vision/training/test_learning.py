@@ -20,10 +20,12 @@ from linkwright.vision.training.yolo_dataset import open_dataset
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
 # `make test-train` sets the variable, so that a missing PyTorch is an error there, instead of a skip.
-HERE = find_spec("torch") is not None or "LINKWRIGHT_TESTS_TRAINING" in os.environ
-pytestmark = pytest.mark.skipif(not HERE, reason="PyTorch is not installed; `make test-train` installs it")
+IS_TRAINING_TESTED = find_spec("torch") is not None or "LINKWRIGHT_TESTS_TRAINING" in os.environ
+pytestmark = pytest.mark.skipif(
+    not IS_TRAINING_TESTED, reason="PyTorch is not installed; `make test-train` installs it"
+)
 
-if HERE:
+if IS_TRAINING_TESTED:
     import onnxruntime
     import torch
 
@@ -40,7 +42,7 @@ def shapes(tmp_path_factory):
     return write_shapes(tmp_path_factory.mktemp("data") / "shapes", 8)
 
 
-def options(shapes: Path, output: Path, **changed) -> Options:
+def training_options(shapes: Path, output: Path, **changed) -> Options:
     usual = Options(shapes, output, epochs=4, batch=8, width=96, height=96, channels=4, threads=1)
     return replace(usual, **changed)
 
@@ -52,12 +54,12 @@ def train_course(settings: Options) -> TrainingLoop:
     return TrainingLoop(dataset.names, settings, labeled_images, labeled_images)
 
 
-def weights(training_loop: TrainingLoop) -> np.ndarray:
+def network_weights(training_loop: TrainingLoop) -> np.ndarray:
     return np.concatenate([parameter.detach().numpy().ravel() for parameter in training_loop.network.parameters()])
 
 
 def test_network_overfits_eight_images(shapes, tmp_path):
-    training_loop = train_course(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
+    training_loop = train_course(training_options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
     epochs = []
     training_loop.run(epochs.append)
     first, last = (
@@ -70,18 +72,18 @@ def test_network_overfits_eight_images(shapes, tmp_path):
 
 
 def test_same_seed_gives_same_weights(shapes, tmp_path):
-    courses = [train_course(options(shapes, tmp_path, seed=seed)) for seed in (3, 3, 4)]
+    courses = [train_course(training_options(shapes, tmp_path, seed=seed)) for seed in (3, 3, 4)]
     for training_loop in courses:
         training_loop.run(lambda _: None)
-    assert (weights(courses[0]) == weights(courses[1])).all()
-    assert (weights(courses[0]) != weights(courses[2])).any()
+    assert (network_weights(courses[0]) == network_weights(courses[1])).all()
+    assert (network_weights(courses[0]) != network_weights(courses[2])).any()
 
 
 def test_bfloat16_training_matches_float32_within_rounding(shapes, tmp_path):
     losses = []
     for precision in ("float32", "bfloat16"):
         training_loop, received = (
-            train_course(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)),
+            train_course(training_options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)),
             [],
         )
         training_loop.run(received.append)
@@ -93,9 +95,9 @@ def test_bfloat16_training_matches_float32_within_rounding(shapes, tmp_path):
 
 
 def test_resumed_training_matches_uninterrupted_training(shapes, tmp_path):
-    uninterrupted = train_course(options(shapes, tmp_path / "whole"))
+    uninterrupted = train_course(training_options(shapes, tmp_path / "whole"))
     uninterrupted.run(lambda _: None)
-    interrupted = train_course(options(shapes, tmp_path / "begun"))
+    interrupted = train_course(training_options(shapes, tmp_path / "begun"))
 
     def stop_after_two(epoch):
         if epoch.number == 2:
@@ -103,11 +105,11 @@ def test_resumed_training_matches_uninterrupted_training(shapes, tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         interrupted.run(stop_after_two)
-    resumed = train_course(options(shapes, tmp_path / "begun"))
+    resumed = train_course(training_options(shapes, tmp_path / "begun"))
     resumed.load(tmp_path / "begun" / "last.pt")
     assert resumed.epoch == 2
     resumed.run(lambda _: None)
-    assert (weights(resumed) == weights(uninterrupted)).all()
+    assert (network_weights(resumed) == network_weights(uninterrupted)).all()
 
 
 @pytest.mark.parametrize("content", [b"", b"none", None])
@@ -115,14 +117,14 @@ def test_malformed_checkpoint_is_reported(shapes, tmp_path, content):
     if content is not None:
         (tmp_path / "last.pt").write_bytes(content)
     with pytest.raises(LinkwrightError) as caught:
-        train_course(options(shapes, tmp_path)).load(tmp_path / "last.pt")
+        train_course(training_options(shapes, tmp_path)).load(tmp_path / "last.pt")
     assert caught.value.diagnostics[0].code == "VISION306"
 
 
 def test_checkpoint_of_another_network_is_rejected(shapes, tmp_path):
-    train_course(options(shapes, tmp_path)).save(tmp_path / "last.pt")
+    train_course(training_options(shapes, tmp_path)).save(tmp_path / "last.pt")
     with pytest.raises(LinkwrightError) as caught:
-        train_course(options(shapes, tmp_path, channels=8)).load(tmp_path / "last.pt")
+        train_course(training_options(shapes, tmp_path, channels=8)).load(tmp_path / "last.pt")
     assert "other classes or sizes" in str(caught.value.diagnostics[0].message)
 
 
@@ -147,7 +149,7 @@ def test_exported_network_matches_trained_network():
 
 
 @pytest.fixture
-def exported(tmp_path):
+def exported_network(tmp_path):
     """Export a network of three classes with changed normalizations, and return it with its file."""
     torch.manual_seed(3)
     network = Network(Shape(3, 4))
@@ -160,22 +162,22 @@ def exported(tmp_path):
     return network, file
 
 
-def output_of(network, image):
+def run_network(network, image):
     with torch.no_grad():
         boxes, logits = network.eval()(image)
     return boxes[0], logits[0]
 
 
-def test_loaded_weights_match_exported_network(exported):
-    other, file = exported
+def test_loaded_weights_match_exported_network(exported_network):
+    other, file = exported_network
     network, image = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [torch.rand(8, 3, 64, 64)])
-    for output, expected in zip(output_of(network, image), output_of(other, image), strict=True):
+    for output, expected in zip(run_network(network, image), run_network(other, image), strict=True):
         assert torch.allclose(output, expected, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
 
 
-def test_loaded_network_has_measured_batch_statistics(exported):
-    _, file = exported
+def test_loaded_network_has_measured_batch_statistics(exported_network):
+    _, file = exported_network
     network, images = Network(Shape(3, 4)), torch.rand(16, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [images])
     with torch.no_grad():
@@ -184,11 +186,11 @@ def test_loaded_network_has_measured_batch_statistics(exported):
     assert (training_output - expected_logits).abs().mean() < 0.2 * expected_logits.std()
 
 
-def test_loaded_class_weights_are_matched_by_name(exported):
-    other, file = exported
+def test_loaded_class_weights_are_matched_by_name(exported_network):
+    other, file = exported_network
     network, image = Network(Shape(2, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("ring", "square"), file, [torch.rand(8, 3, 64, 64)])
-    (boxes, logits), (wanted_boxes, expected_logits) = output_of(network, image), output_of(other, image)
+    (boxes, logits), (wanted_boxes, expected_logits) = run_network(network, image), run_network(other, image)
     assert torch.allclose(boxes, wanted_boxes, rtol=0.02, atol=0.1)
     assert torch.allclose(logits[:, 1], expected_logits[:, 1], rtol=0.02, atol=0.1)
     assert network.heads[0].scores[-1].bias[0].item() == pytest.approx(-np.log(99))
@@ -203,8 +205,8 @@ def test_loaded_class_weights_are_matched_by_name(exported):
         ("exported", 8, "its first layer has 4 channels, but this network has 8"),
     ],
 )
-def test_incompatible_weights_are_rejected(exported, tmp_path, content, channels, reason):
-    file = exported[1] if content == "exported" else tmp_path / "other.onnx"
+def test_incompatible_weights_are_rejected(exported_network, tmp_path, content, channels, reason):
+    file = exported_network[1] if content == "exported" else tmp_path / "other.onnx"
     if isinstance(content, bytes):
         file.write_bytes(content)
     with pytest.raises(LinkwrightError) as caught:
@@ -283,7 +285,7 @@ def test_training_until_ctrl_c_is_kept(shapes, tmp_path):
         if epoch.number == 2:
             raise KeyboardInterrupt
 
-    result = train_network(options(shapes, tmp_path), stop_after_two)
+    result = train_network(training_options(shapes, tmp_path), stop_after_two)
     assert result.was_interrupted
     assert result.network.is_file()
     assert "2 of 4" in result.card.read_text(encoding="utf-8")
