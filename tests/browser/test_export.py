@@ -15,7 +15,7 @@ from tests.browser.golden import link_element, mesh_visual, robot_of
 from tests.browser.live import configuration
 from tests.browser.mesh_writers import make_png, write_dae, write_obj, write_stl_binary
 from tests.panels.export.robots import GRIPPER
-from tests.panels.export.test_glb import textured_dae
+from tests.panels.export.test_glb import make_textured_dae
 
 pytestmark = pytest.mark.browser
 
@@ -84,7 +84,7 @@ def assert_alike(first: dict, second: dict) -> None:
 
 def robot_with_meshes(folder: Path) -> str:
     (folder / "skin.png").write_bytes(make_png(255, 255, 0))
-    (folder / "skin.dae").write_text(textured_dae())
+    (folder / "skin.dae").write_text(make_textured_dae())
     (folder / "inches.dae").write_bytes(write_dae(unit=0.0254, diffuse="<color>0 0 1 1</color>"))
     (folder / "own.obj").write_bytes(write_obj("own.mtl", "paint"))
     (folder / "own.mtl").write_text("newmtl paint\nKd 1 0.5 0\n")

@@ -11,7 +11,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_message
 from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.live import configuration
-from tests.rviz.displays.test_geometry_displays import message, pose
+from tests.rviz.displays.test_geometry_displays import make_message, make_pose
 
 pytestmark = pytest.mark.browser
 
@@ -54,35 +54,35 @@ def publish_all(viewer) -> None:
     """Publish a message for each display; the frame ``tip`` is one meter above ``base``."""
     viewer.place("tip", 0.0, 0.0, 1.0)
     viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
-    viewer.publish("/pose", message("geometry_msgs/msg/PoseStamped", pose=pose(1)))
-    pose_estimate = message("geometry_msgs/msg/PoseWithCovarianceStamped")
-    pose_estimate.pose.pose = pose(0, 2)
+    viewer.publish("/pose", make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(1)))
+    pose_estimate = make_message("geometry_msgs/msg/PoseWithCovarianceStamped")
+    pose_estimate.pose.pose = make_pose(0, 2)
     pose_estimate.pose.covariance = np.diag([0.25, 0.04, 0.01, 0.01, 0.01, 0.01]).ravel()
     viewer.publish("/guess", pose_estimate)
-    viewer.publish("/cloud", message("geometry_msgs/msg/PoseArray", poses=[pose(x) for x in range(5)]))
+    viewer.publish("/cloud", make_message("geometry_msgs/msg/PoseArray", poses=[make_pose(x) for x in range(5)]))
     particle = get_message("nav2_msgs/msg/Particle")
-    particles = [particle(pose=pose(0), weight=0.0), particle(pose=pose(1), weight=0.5)]
-    viewer.publish("/particle_cloud", message("nav2_msgs/msg/ParticleCloud", particles=particles))
+    particles = [particle(pose=make_pose(0), weight=0.0), particle(pose=make_pose(1), weight=0.5)]
+    viewer.publish("/particle_cloud", make_message("nav2_msgs/msg/ParticleCloud", particles=particles))
     for x in (0, 1, 2):
-        odometry = message("nav_msgs/msg/Odometry")
-        odometry.pose.pose = pose(x, -2)
+        odometry = make_message("nav_msgs/msg/Odometry")
+        odometry.pose.pose = make_pose(x, -2)
         viewer.publish("/odom", odometry)
-    poses = [message("geometry_msgs/msg/PoseStamped", pose=pose(x, 3)) for x in range(4)]
-    viewer.publish("/plan", message("nav_msgs/msg/Path", poses=poses))
-    field = message("geometry_msgs/msg/PolygonStamped")
+    poses = [make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(x, 3)) for x in range(4)]
+    viewer.publish("/plan", make_message("nav_msgs/msg/Path", poses=poses))
+    field = make_message("geometry_msgs/msg/PolygonStamped")
     corner = get_message("geometry_msgs/msg/Point32")
     field.polygon.points = [corner(x=x, y=y, z=0.0) for x, y in ((-3.0, -3.0), (-1.0, -3.0), (-1.0, -1.0))]
     viewer.publish("/field", field)
-    sonar = message("sensor_msgs/msg/Range", range=2.0, min_range=0.1, max_range=4.0, field_of_view=math.pi / 2)
+    sonar = make_message("sensor_msgs/msg/Range", range=2.0, min_range=0.1, max_range=4.0, field_of_view=math.pi / 2)
     viewer.publish("/sonar", sonar)
-    velocity = message("geometry_msgs/msg/TwistStamped")
+    velocity = make_message("geometry_msgs/msg/TwistStamped")
     velocity.twist.linear.x, velocity.twist.angular.z = 1.0, 0.1
     viewer.publish("/speed", velocity)
-    push = message("geometry_msgs/msg/WrenchStamped")
+    push = make_message("geometry_msgs/msg/WrenchStamped")
     push.wrench.torque.z = 1.0
     viewer.publish("/push", push)
     viewer.publish("/joint_states", JointState(name=["lift"], position=[0.0], effort=[10.0]))
-    click = message("geometry_msgs/msg/PointStamped")
+    click = make_message("geometry_msgs/msg/PointStamped")
     click.point.z = 1.0
     viewer.publish("/click", click)
 

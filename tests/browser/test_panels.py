@@ -9,7 +9,7 @@ import pytest
 from linkwright.rviz import RvizConfig
 from tests.browser.conftest import wait_until_equal
 from tests.browser.live import configuration
-from tests.panels.panels import RVIZ_PANELS, panels_of, window_state
+from tests.panels.panels import RVIZ_PANELS, open_panels, window_state
 
 pytestmark = pytest.mark.browser
 
@@ -108,7 +108,7 @@ def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_
     wait_for_panels(open_page(viewer, wait=False), "Displays", "Selection")
     page.keyboard.press("Control+s")
     page.locator(".file-name .unsaved").wait_for(state="detached")
-    assert panels_of(RvizConfig.load(path)) == ["displays", "selection"]
+    assert open_panels(RvizConfig.load(path)) == ["displays", "selection"]
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitem", name="Reset layout").click()
     wait_for_panels(page, "Displays", "Selection")

@@ -12,9 +12,9 @@ from linkwright.messages import get_message
 from tests.browser.conftest import count_frames, state, until, wait_until_equal
 from tests.browser.pixels import Color, colors_at
 from tests.images.test_images import image
-from tests.rviz.clouds.test_clouds import cloud, depth_image, scan, xyz
-from tests.rviz.displays.test_cloud_displays import camera_info, placed
-from tests.rviz.displays.test_map_displays import cell_grid, grid, update
+from tests.rviz.clouds.test_clouds import make_cloud, make_depth_image, make_scan, xyz_array
+from tests.rviz.displays.test_cloud_displays import make_camera_info, with_frame
+from tests.rviz.displays.test_map_displays import make_cell_grid, make_grid, make_update
 from tests.viewer.packed_images import depth_message, jpeg, packed
 from tests.waiting import wait_until
 
@@ -51,9 +51,9 @@ def drawing_of(page: Any, display: int = 0) -> dict[str, Any]:
 
 
 def three_points(**fields: Any) -> Any:
-    array = xyz([(-2, 0, 0), (0, 0, 0), (2, 0, 0)], ("rgb", "u4"), ("intensity", "f4"))
+    array = xyz_array([(-2, 0, 0), (0, 0, 0), (2, 0, 0)], ("rgb", "u4"), ("intensity", "f4"))
     array["rgb"], array["intensity"] = [0xFF0000, 0x00FF00, 0x0000FF], [1, 2, 3]
-    return cloud(array, **fields)
+    return make_cloud(array, **fields)
 
 
 def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object) -> None:
@@ -110,18 +110,18 @@ def test_large_cloud_is_updated_continuously(live, open_page):
     viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
     page = open_page(viewer, wait=False)
     rng = np.random.default_rng(0)
-    array = np.zeros(100_000, xyz([]).dtype)
+    array = np.zeros(100_000, xyz_array([]).dtype)
     for name in "xyz":
         array[name] = rng.uniform(-3, 3, array.size)
     # The first message arrives while the page starts, and the others follow at once. The last one is drawn completely.
     for number in range(10):
         array["x"][0] = 4.0 + number  # the bounds show which message is drawn
-        viewer.publish("/cloud", cloud(array))
+        viewer.publish("/cloud", make_cloud(array))
     until(page, "lw.displays[0]?.drawn?.bounds?.[1][0] === 13 && lw.displays[0].drawn.points === 100000")
     # Messages that arrive after the previous one is drawn are all drawn.
     for number in range(3):
         array["x"][0] = 20.0 + number
-        viewer.publish("/cloud", cloud(array))
+        viewer.publish("/cloud", make_cloud(array))
         until(page, f"lw.displays[0].drawn.bounds[1][0] === {20 + number} && lw.displays[0].drawn.points === 100000")
 
 
@@ -134,10 +134,10 @@ def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("thermometer", 0.0, -2.0, 0.0)
-    viewer.publish("/scan", placed(scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
+    viewer.publish("/scan", with_frame(make_scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
     temperature = get_message("sensor_msgs/msg/Temperature")(temperature=100.0)
-    viewer.publish("/temperature", placed(temperature, "thermometer"))
-    viewer.publish("/cells", cell_grid(-1.5, width=1.0, height=0.5))
+    viewer.publish("/temperature", with_frame(temperature, "thermometer"))
+    viewer.publish("/cells", make_cell_grid(-1.5, width=1.0, height=0.5))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.points === 1")
     until(page, "lw.displays[2].drawn.cells === 1")
     viewer.settle(page)
@@ -152,7 +152,7 @@ def test_map_is_drawn_and_updated(live, open_page):
     )
     viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
-    viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
+    viewer.publish("/map", make_grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
     # The corner is at x = -1, and cells are half a meter wide.
     points = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
@@ -170,7 +170,7 @@ def test_map_is_drawn_and_updated(live, open_page):
     )
     set_property(viewer, 0, ("Binary representation",), False)
     set_property(viewer, 0, ("Color Scheme",), "map")
-    viewer.publish("/map_updates", update(0, 0, 1, 1, [100]))
+    viewer.publish("/map_updates", make_update(0, 0, 1, 1, [100]))
     until(page, "lw.displays[0].drawn.counts[100] === 2")
     wait_until_equal(lambda: colors_from_above(page, points[0]), [(0, 0, 0)])
 
@@ -183,7 +183,7 @@ def test_map_drawn_behind_does_not_hide_points(live, open_page):
     viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("cellar", 0.0, 0.0, -3.0)
-    viewer.publish("/map", grid())
+    viewer.publish("/map", make_grid())
     viewer.publish("/cloud", three_points(frame="cellar"))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
@@ -272,11 +272,11 @@ def test_camera_display_shows_scene_over_image(live, open_page):
     page = open_page(viewer, wait=False)
     # The camera is at the origin and looks along x: its z axis points ahead, and its x axis to the right.
     viewer.place("camera", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
-    viewer.publish("/camera/camera_info", camera_info(40, 30))
-    info = camera_info(40, 30)
+    viewer.publish("/camera/camera_info", make_camera_info(40, 30))
+    info = make_camera_info(40, 30)
     info.p = np.array([20.0, 0, 20, 0, 0, 20.0, 15, 0, 0, 0, 1, 0])
     viewer.publish("/camera/camera_info", info)
-    viewer.publish("/camera/image", placed(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "camera"))
+    viewer.publish("/camera/image", with_frame(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "camera"))
     until(page, "lw.displays[0]?.drawn?.image?.[0] === 40 && lw.displays[0].drawn.width > 0")
     wait_until_equal(lambda: drawing_of(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
     assert drawing_of(page)["position"] == pytest.approx([0, 0, 0])
@@ -295,9 +295,9 @@ def test_depth_image_is_drawn_as_points(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
     viewer = live(make_config(display_entry("DepthCloud", **topics)))
     page = open_page(viewer, wait=False)
-    viewer.publish("/depth/camera_info", camera_info(2, 1))
-    viewer.publish("/color/image", placed(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
-    viewer.publish("/depth/image", placed(depth_image([[2.0, 4.0]])))
+    viewer.publish("/depth/camera_info", make_camera_info(2, 1))
+    viewer.publish("/color/image", with_frame(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
+    viewer.publish("/depth/image", with_frame(make_depth_image([[2.0, 4.0]])))
     until(page, "lw.displays[0]?.drawn?.points === 2")
     wait_until_equal(lambda: drawing_of(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
     # The width of a pixel is half its distance: 1 m and 2 m here.
@@ -316,7 +316,7 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     page = open_page(viewer, wait=False)
     assert "choose raw, compressed" in viewer.status("DepthCloud")["Depth Map Transport Hint"][1]
     set_property(viewer, 0, ("Depth Map Transport Hint",), "compressedDepth")
-    viewer.publish("/depth/camera_info", camera_info(2, 1))
+    viewer.publish("/depth/camera_info", make_camera_info(2, 1))
     viewer.publish("/color/image/compressed", packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 255), 2, 1)))
     viewer.publish("/depth/image/compressedDepth", depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
     until(page, "lw.displays[0]?.drawn?.points === 2 && lw.displays[1].drawn?.width === 2")
@@ -334,7 +334,7 @@ def test_idle_displays_are_not_redrawn(live, open_page):
     )
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
-    viewer.publish("/map", grid())
+    viewer.publish("/map", make_grid())
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
     wait_until_equal(lambda: count_frames(page), 0)

@@ -17,7 +17,7 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.targets import find_targets
 from linkwright.lint.xacro_facts import FileFacts
 
-GOOD = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
+VALID_ROBOT = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 LONG_AXIS = """<robot name="r">
   <link name="base_link"/>
@@ -34,7 +34,7 @@ ROBOT_WITH_A_PROPERTY = f"""<robot name="{{name}}" {XACRO}>
   <link name="base_link"/>
 </robot>
 """
-ONLY = ["--select", "LW2"]
+SELECTION = ["--select", "LW2"]
 
 
 @pytest.fixture(autouse=True)
@@ -43,17 +43,17 @@ def working_directory(tmp_path, monkeypatch):
     return tmp_path
 
 
-def write(folder, files):
+def write_files(folder, files):
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
 
 
 def test_folder_check_selects_standalone_descriptions(working_directory):
-    write(
+    write_files(
         working_directory,
         {
-            "a/plain.urdf": GOOD,
+            "a/plain.urdf": VALID_ROBOT,
             "a/robot.urdf.xacro": f'<robot name="r" {XACRO}><xacro:include filename="parts/arm.xacro"/><x/></robot>',
             "a/parts/colors.urdf": f'<robot name="c" {XACRO}/>',
             "a/parts/arm.xacro": f'<robot name="arm" {XACRO}><link name="b"/></robot>',
@@ -63,10 +63,10 @@ def test_folder_check_selects_standalone_descriptions(working_directory):
             "a/unnamed2.xacro": f'<robot {XACRO}><xacro:include filename="parts/colors.urdf"/></robot>',
             "a/r.srdf.xacro": f'<robot name="s" {XACRO}><group name="arm"/></robot>',
             "a/broken.xacro": "<robot",
-            "build/copy.urdf": GOOD,
-            ".hidden/h.urdf": GOOD,
+            "build/copy.urdf": VALID_ROBOT,
+            ".hidden/h.urdf": VALID_ROBOT,
             "ignored/COLCON_IGNORE": "",
-            "ignored/i.urdf": GOOD,
+            "ignored/i.urdf": VALID_ROBOT,
         },
     )
     targets = [path.relative_to(working_directory).as_posix() for path in find_targets([working_directory]).files]
@@ -81,20 +81,23 @@ def test_files_included_by_argument_or_environment_are_not_standalone(working_di
       <link name="base_link"/>
     </robot>"""
     nothing = "<robot></robot>"
-    write(working_directory, {"r.urdf.xacro": text, "empty.urdf": nothing, "nothing.urdf": nothing, "other.urdf": GOOD})
+    write_files(
+        working_directory,
+        {"r.urdf.xacro": text, "empty.urdf": nothing, "nothing.urdf": nothing, "other.urdf": VALID_ROBOT},
+    )
     assert [path.name for path in find_targets([working_directory]).files] == ["other.urdf", "r.urdf.xacro"]
 
 
 @pytest.mark.parametrize(("text", "files"), [("<robot></robot>", []), ('<robot name="r"></robot>', ["r.urdf"])])
 def test_robot_without_name_and_content_is_not_checked_in_folder(working_directory, text, files):
-    write(working_directory, {"r.urdf": text})
+    write_files(working_directory, {"r.urdf": text})
     assert [path.name for path in find_targets([working_directory]).files] == files
 
 
 def test_package_files_are_read_once_for_all_descriptions(working_directory, monkeypatch):
     walks, walked = [], []
     files = {f"p/urdf/{name}.xacro": ROBOT_WITH_A_PROPERTY.format(name=name) for name in ("a", "b", "c")}
-    write(working_directory, {"p/package.xml": "<package><name>p</name></package>", **files})
+    write_files(working_directory, {"p/package.xml": "<package><name>p</name></package>", **files})
     for name in files:
         os.utime(working_directory / name, (1, 1))  # files that were written just now are read again
     listed, facts = PackageContext._walk, FileFacts._walk
@@ -107,11 +110,11 @@ def test_package_files_are_read_once_for_all_descriptions(working_directory, mon
 
 def test_packages_are_found_around_files_and_in_folders(working_directory):
     manifest = "<package><name>{}</name></package>"
-    write(
+    write_files(
         working_directory,
         {
             "src/one/package.xml": manifest.format("one"),
-            "src/one/urdf/r.urdf": GOOD,
+            "src/one/urdf/r.urdf": VALID_ROBOT,
             "src/two/package.xml": manifest.format("two"),
         },
     )
@@ -128,7 +131,7 @@ def test_packages_are_found_around_files_and_in_folders(working_directory):
 
 def test_file_is_checked_without_package_by_default(working_directory, capsys):
     manifest = "<package><name>one</name><exec_depend>xacro</exec_depend><exec_depend>xacro</exec_depend></package>"
-    write(working_directory, {"one/package.xml": manifest, "one/urdf/r.urdf": GOOD})
+    write_files(working_directory, {"one/package.xml": manifest, "one/urdf/r.urdf": VALID_ROBOT})
     assert main(["check", "one/urdf/r.urdf"]) == 0
     assert "LW8" not in capsys.readouterr().err
     assert main(["check", "--fix", "one/urdf/r.urdf"]) == 0
@@ -141,9 +144,9 @@ def test_file_is_checked_without_package_by_default(working_directory, capsys):
 
 def test_diff_shows_each_package_fix_once(working_directory, capsys):
     line = "  <exec_depend>xacro</exec_depend>\n"
-    write(
+    write_files(
         working_directory,
-        {"one/package.xml": f"<package>\n  <name>one</name>\n{line * 3}</package>\n", "one/r.urdf": GOOD},
+        {"one/package.xml": f"<package>\n  <name>one</name>\n{line * 3}</package>\n", "one/r.urdf": VALID_ROBOT},
     )
     assert main(["check", "--diff", "one"]) == 1
     diff = capsys.readouterr().out
@@ -154,7 +157,7 @@ def test_diff_shows_each_package_fix_once(working_directory, capsys):
     ]
 
 
-def _joints(count):
+def _make_joints(count):
     links = "".join(f'<link name="l{number}"/>\n' for number in range(count + 1))
     joints = "".join(
         f'<joint name="j{number}" type="continuous"><parent link="l{number}"/><child link="l{number + 1}"/>'
@@ -165,22 +168,22 @@ def _joints(count):
 
 
 def test_many_similar_findings_are_grouped_in_text_output(working_directory, capsys):
-    write(working_directory, {"r.urdf": _joints(70)})
-    main(["check", "r.urdf", *ONLY])
+    write_files(working_directory, {"r.urdf": _make_joints(70)})
+    main(["check", "r.urdf", *SELECTION])
     output = capsys.readouterr().err
     assert output.count("warning[LW221]") == 1
     assert "note: the axis of joint 'j2' has length 2, not 1: '0 0 2' (r.urdf:75:" in output
     assert "note: and 67 more like it (--all shows them)" in output
     assert output.endswith("0 errors, 70 warnings\n")
-    main(["check", "r.urdf", *ONLY, "--all"])
+    main(["check", "r.urdf", *SELECTION, "--all"])
     assert capsys.readouterr().err.count("warning[LW221]") == 70
-    main(["check", "r.urdf", *ONLY, "--format", "json"])
+    main(["check", "r.urdf", *SELECTION, "--format", "json"])
     assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 70
 
 
 def test_few_similar_findings_are_shown_separately(working_directory, capsys):
-    write(working_directory, {"r.urdf": _joints(3)})
-    main(["check", "r.urdf", *ONLY])
+    write_files(working_directory, {"r.urdf": _make_joints(3)})
+    main(["check", "r.urdf", *SELECTION])
     assert capsys.readouterr().err.count("warning[LW221]") == 3
 
 
@@ -189,9 +192,9 @@ def test_checked_robot_is_freed_without_garbage_collector(working_directory, mon
 
     The garbage collector, which may not run for long, is off.
     """
-    robot = _joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
+    robot = _make_joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
     names = [f"r{number}.{ending}" for number in range(6) for ending in ("urdf", "urdf.xacro")]
-    write(working_directory, dict.fromkeys(names, robot))
+    write_files(working_directory, dict.fromkeys(names, robot))
     alive = []
 
     def counted(*arguments, **options):
@@ -209,8 +212,8 @@ def test_checked_robot_is_freed_without_garbage_collector(working_directory, mon
 
 
 def test_several_files_print_summary_instead_of_tree(working_directory, capsys):
-    write(working_directory, {"a.urdf": GOOD, "b.urdf": LONG_AXIS})
-    assert main(["check", "a.urdf", "b.urdf", *ONLY]) == 0
+    write_files(working_directory, {"a.urdf": VALID_ROBOT, "b.urdf": LONG_AXIS})
+    assert main(["check", "a.urdf", "b.urdf", *SELECTION]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "warning[LW221]" in captured.err
@@ -218,17 +221,17 @@ def test_several_files_print_summary_instead_of_tree(working_directory, capsys):
 
 
 def test_strict_exits_with_1_on_warnings(working_directory):
-    write(working_directory, {"b.urdf": LONG_AXIS})
-    assert main(["check", "b.urdf", *ONLY]) == 0
-    assert main(["check", "b.urdf", *ONLY, "--strict"]) == 1
-    assert main(["check", "b.urdf", *ONLY, "--strict", "--ignore", "axis-not-unit"]) == 0
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    assert main(["check", "b.urdf", *SELECTION]) == 0
+    assert main(["check", "b.urdf", *SELECTION, "--strict"]) == 1
+    assert main(["check", "b.urdf", *SELECTION, "--strict", "--ignore", "axis-not-unit"]) == 0
 
 
 def test_format_option_writes_findings_to_standard_output(working_directory, capsys):
-    write(working_directory, {"b.urdf": LONG_AXIS})
-    main(["check", "b.urdf", *ONLY, "--format", "concise"])
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    main(["check", "b.urdf", *SELECTION, "--format", "concise"])
     assert capsys.readouterr().out.startswith("b.urdf:7:16: warning[LW221] ")
-    main(["check", "b.urdf", *ONLY, "--format", "json"])
+    main(["check", "b.urdf", *SELECTION, "--format", "json"])
     (diagnostic,) = json.loads(capsys.readouterr().out)["diagnostics"]
     assert (diagnostic["code"], diagnostic["file"], diagnostic["line"], diagnostic["column"]) == (
         "LW221",
@@ -236,9 +239,9 @@ def test_format_option_writes_findings_to_standard_output(working_directory, cap
         7,
         16,
     )
-    main(["check", "b.urdf", *ONLY, "--format", "sarif"])
+    main(["check", "b.urdf", *SELECTION, "--format", "sarif"])
     assert json.loads(capsys.readouterr().out)["version"] == "2.1.0"
-    main(["check", "b.urdf", *ONLY, "--format", "github"])
+    main(["check", "b.urdf", *SELECTION, "--format", "github"])
     captured = capsys.readouterr()
     assert captured.out.startswith("::warning file=b.urdf,line=7")
     assert captured.err == ""
@@ -246,40 +249,40 @@ def test_format_option_writes_findings_to_standard_output(working_directory, cap
 
 def test_file_included_by_two_robots_is_reported_once(working_directory, capsys):
     robot = f'<robot name="r" {XACRO}><xacro:include filename="../arm.xacro"/></robot>'
-    write(
+    write_files(
         working_directory,
         {"a/one.xacro": robot, "a/two.xacro": robot, "arm.xacro": LONG_AXIS.replace('name="r"', XACRO, 1)},
     )
-    main(["check", "a", *ONLY, "--format", "json"])
+    main(["check", "a", *SELECTION, "--format", "json"])
     assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 1
 
 
 def test_argument_values_apply_to_all_files(working_directory, capsys):
     text = f'<robot name="r" {XACRO}><link name="$(arg n)"/></robot>'
-    write(working_directory, {"a.xacro": text, "b.xacro": text})
-    assert main(["check", "a.xacro", "n:=x", "b.xacro", *ONLY]) == 0
-    assert main(["check", "a.xacro", "b.xacro", *ONLY]) == 1
+    write_files(working_directory, {"a.xacro": text, "b.xacro": text})
+    assert main(["check", "a.xacro", "n:=x", "b.xacro", *SELECTION]) == 0
+    assert main(["check", "a.xacro", "b.xacro", *SELECTION]) == 1
 
 
 def test_fixes_are_written_and_counted(working_directory, capsys):
-    write(working_directory, {"b.urdf": LONG_AXIS})
-    assert main(["check", "b.urdf", "--diff", *ONLY]) == 1
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    assert main(["check", "b.urdf", "--diff", *SELECTION]) == 1
     assert '+    <axis xyz="0 0 1"/>' in capsys.readouterr().out
     assert (working_directory / "b.urdf").read_text() == LONG_AXIS
-    assert main(["check", "b.urdf", "--fix", *ONLY]) == 0
+    assert main(["check", "b.urdf", "--fix", *SELECTION]) == 0
     assert (working_directory / "b.urdf").read_text() == LONG_AXIS.replace("0 0 2", "0 0 1")
     assert "fixed 1 finding in 1 file" in capsys.readouterr().err
-    assert main(["check", "b.urdf", "--diff", *ONLY]) == 0
+    assert main(["check", "b.urdf", "--diff", *SELECTION]) == 0
 
 
 def test_statistics_count_findings_by_rule(working_directory, capsys):
-    write(working_directory, {"b.urdf": LONG_AXIS})
-    main(["check", "b.urdf", "--statistics", *ONLY])
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    main(["check", "b.urdf", "--statistics", *SELECTION])
     assert capsys.readouterr().err.endswith("     1  LW221     axis-not-unit\n")
 
 
 def test_configuration_is_found_or_given_by_option(working_directory, capsys):
-    write(
+    write_files(
         working_directory,
         {"r/b.urdf": LONG_AXIS, "r/linkwright.toml": 'select = ["LW1"]\n', "other.toml": 'select = ["LW2"]\n'},
     )
@@ -290,7 +293,9 @@ def test_configuration_is_found_or_given_by_option(working_directory, capsys):
 
 
 def test_configuration_errors_are_reported_once(working_directory, capsys):
-    write(working_directory, {"a.urdf": GOOD, "b.urdf": GOOD, "linkwright.toml": 'ignore = ["nonsens"]\n'})
+    write_files(
+        working_directory, {"a.urdf": VALID_ROBOT, "b.urdf": VALID_ROBOT, "linkwright.toml": 'ignore = ["nonsens"]\n'}
+    )
     assert main(["check", "a.urdf", "b.urdf"]) == 1
     assert capsys.readouterr().err.count("error[LINT104]") == 1
 
@@ -304,13 +309,13 @@ def test_configuration_errors_are_reported_once(working_directory, capsys):
     ],
 )
 def test_invalid_usage_is_rejected(working_directory, capsys, words, message):
-    write(working_directory, {"b.urdf": GOOD})
+    write_files(working_directory, {"b.urdf": VALID_ROBOT})
     assert main(["check", *words]) == 2
     assert message in capsys.readouterr().err
 
 
 def test_missing_file_error_suggests_existing_files(working_directory, capsys):
-    write(working_directory, {"b.urdf": GOOD})
+    write_files(working_directory, {"b.urdf": VALID_ROBOT})
     assert main(["check", "c.urdf"]) == 1
     assert "choose from b.urdf" in capsys.readouterr().err
 
@@ -323,11 +328,16 @@ def test_url_argument_is_printed_as_typed(working_directory, capsys):
 
 @pytest.mark.parametrize(("manifest", "is_told"), [("web/package.json", False), ("package.json", True)])
 def test_public_folder_of_nested_web_package_is_skipped(working_directory, manifest, is_told):
-    write(
+    write_files(
         working_directory,
-        {"package.xml": "<package/>", manifest: "{}", "web/public/robot.urdf": GOOD, "urdf/robot.urdf": GOOD},
+        {
+            "package.xml": "<package/>",
+            manifest: "{}",
+            "web/public/robot.urdf": VALID_ROBOT,
+            "urdf/robot.urdf": VALID_ROBOT,
+        },
     )
-    write(working_directory, {"inner/package.xml": "<package/>"})
+    write_files(working_directory, {"inner/package.xml": "<package/>"})
     for folder in (working_directory, Path()):
         folders = [path.parent.name for path in find_targets([folder]).files]
         assert folders == (["urdf", "public"] if is_told else ["urdf"])
@@ -382,8 +392,8 @@ def test_warnings_in_test_folders_are_skipped_in_folder_check(working_directory,
     ],
 )
 def test_warnings_in_backup_and_vendor_folders_are_skipped(working_directory, capsys, folder, is_told):
-    write(working_directory, {f"p/{folder}/r.urdf": LONG_AXIS})
-    main(["check", *ONLY, "p"])
+    write_files(working_directory, {f"p/{folder}/r.urdf": LONG_AXIS})
+    main(["check", *SELECTION, "p"])
     assert ("LW221" in capsys.readouterr().err) is is_told
 
 
@@ -393,7 +403,7 @@ def test_unused_part_of_robot_is_not_reported_as_broken(working_directory, capsy
     chain = LONG_AXIS.replace("</robot>", "") + "".join(f'<link name="l{name}"/>{joint.format(name)}' for name in "bc")
     camera = f'<joint name="camera" type="fixed"><parent link="{parent}"/><child link="camera"/></joint>'
     red = '<visual><geometry><box size="1 1 1"/></geometry><material name="red"/></visual>'
-    write(
+    write_files(
         working_directory,
         {
             "package.xml": "<package><name>p</name></package>",
@@ -415,7 +425,9 @@ def generate_launch_description():
     return LaunchDescription([Node(package="p", parameters=[
         os.path.join(get_package_share_directory("p"), "config", "lost.yaml")])])
 """
-    write(working_directory, {"p/package.xml": "<package><name>p</name></package>", f"p/{folder}/a.launch.py": text})
+    write_files(
+        working_directory, {"p/package.xml": "<package><name>p</name></package>", f"p/{folder}/a.launch.py": text}
+    )
     main(["check", ".", "--format", "concise"])
     assert ("LW842" in capsys.readouterr().out) is is_told
 
@@ -423,7 +435,9 @@ def generate_launch_description():
 @pytest.mark.parametrize(("folder", "count"), [("urdf", 1), ("vendor", 0)])
 def test_missing_package_of_vendor_copy_is_not_reported_in_folder(working_directory, capsys, folder, count):
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
-    write(working_directory, {f"{folder}/r.urdf.xacro": f'<robot name="r" {XACRO}>{include}<link name="a"/></robot>'})
+    write_files(
+        working_directory, {f"{folder}/r.urdf.xacro": f'<robot name="r" {XACRO}>{include}<link name="a"/></robot>'}
+    )
     main(["check", ".", "--format", "concise"])
     assert capsys.readouterr().out.count("PKG101") == count
 
@@ -432,7 +446,7 @@ def test_missing_package_of_include_is_not_repeated_for_meshes(working_directory
     mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
     links = "".join(f'<link name="{name}">{mesh.format(name)}</link>' for name in ("far_description", "other"))
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
-    write(working_directory, {"r.urdf.xacro": f'<robot name="r" {XACRO}>{include}{links}</robot>'})
+    write_files(working_directory, {"r.urdf.xacro": f'<robot name="r" {XACRO}>{include}{links}</robot>'})
     main(["check", ".", "--format", "concise"])
     output = [line for line in capsys.readouterr().out.splitlines() if "PKG101" in line or "LW423" in line]
     assert [("far_description" in line, "PKG101" in line) for line in output] == [(True, True), (False, False)]
@@ -446,7 +460,7 @@ def test_findings_of_xacro_are_not_repeated_for_generated_urdf(working_directory
     )
     chain = chain.replace("</robot>", "") + "</robot>"
     drifted = chain.replace("0 0 2", "0 0 3", 1)
-    write(
+    write_files(
         working_directory,
         {
             "package.xml": "<package><name>p</name></package>",
@@ -455,7 +469,7 @@ def test_findings_of_xacro_are_not_repeated_for_generated_urdf(working_directory
             "urdf/other.urdf": chain.replace('"c"', '"d"'),
         },
     )
-    main(["check", ".", "--format", "concise", *ONLY])
+    main(["check", ".", "--format", "concise", *SELECTION])
     places = [line.partition(":")[0] for line in capsys.readouterr().out.splitlines() if "LW221" in line]
     assert sorted(places) == ["urdf/other.urdf"] * 3 + ["urdf/r.urdf"] + ["xacro/r.urdf.xacro"] * 3
 
@@ -463,10 +477,10 @@ def test_findings_of_xacro_are_not_repeated_for_generated_urdf(working_directory
 @pytest.mark.parametrize(("source", "is_told"), [("r.urdf.xacro", False), ("other.urdf.xacro", True)])
 def test_warnings_in_urdf_generated_from_checked_xacro_are_skipped(working_directory, capsys, source, is_told):
     header = "<!-- |    This document was autogenerated by xacro from /home/me/ws/r.urdf.xacro      | -->\n"
-    write(working_directory, {"p/r.urdf": header + LONG_AXIS, f"p/{source}": GOOD})
-    main(["check", *ONLY, "p"])
+    write_files(working_directory, {"p/r.urdf": header + LONG_AXIS, f"p/{source}": VALID_ROBOT})
+    main(["check", *SELECTION, "p"])
     assert ("LW221" in capsys.readouterr().err) is is_told
-    main(["check", *ONLY, "p/r.urdf"])
+    main(["check", *SELECTION, "p/r.urdf"])
     assert "LW221" in capsys.readouterr().err
 
 
@@ -477,7 +491,7 @@ INCLUDE = '<xacro:include filename="$(find arm)/urdf/part.xacro"/>'
 def test_package_sources_take_precedence_over_installed_copies(working_directory, capsys, user):
     manifest = '<package format="3"><name>{}</name><version>1.0.0</version></package>'
     share = "ws/install/arm/share/arm"
-    write(
+    write_files(
         working_directory,
         {
             "ws/install/arm/share/ament_index/resource_index/packages/arm": "",
@@ -490,11 +504,11 @@ def test_package_sources_take_precedence_over_installed_copies(working_directory
             f"ws/src/{user}/urdf/r.urdf.xacro": f'<robot {XACRO} name="r">{INCLUDE}</robot>',
         },
     )
-    assert main(["check", *ONLY, "--strict", f"ws/src/{user}/urdf/r.urdf.xacro"]) == 0, capsys.readouterr().out
+    assert main(["check", *SELECTION, "--strict", f"ws/src/{user}/urdf/r.urdf.xacro"]) == 0, capsys.readouterr().out
 
 
 def test_unset_environment_variable_is_info_in_folder_check(working_directory, capsys):
-    write(
+    write_files(
         working_directory,
         {"p/r.urdf.xacro": f'<robot {XACRO} name="$(env KIND_OF_ROBOT)"><link name="base_link"/></robot>'},
     )
@@ -540,7 +554,7 @@ def test_urdf_without_links_is_a_part_in_folder_check(working_directory, capsys,
     ],
 )
 def test_fragments_and_unfinished_files_are_skipped_in_folder(working_directory, capsys, name, text, is_told):
-    write(working_directory, {f"p/{name}": text, "p/whole.urdf": GOOD})
+    write_files(working_directory, {f"p/{name}": text, "p/whole.urdf": VALID_ROBOT})
     assert main(["check", "p"]) == int(is_told)
     assert (name in capsys.readouterr().err) is is_told
     assert main(["check", f"p/{name}"]) == 1
@@ -550,8 +564,8 @@ def test_packages_are_searched_in_checked_folder(working_directory, capsys, monk
     manifest = '<package format="3"><name>{}</name></package>'
     robot_text = f'<robot name="r" {XACRO}><xacro:include filename="$(find yonder)/part.xacro"/></robot>'
     files = {"a/b/here_by/package.xml": manifest.format("here_by"), "a/b/here_by/urdf/r.urdf.xacro": robot_text}
-    files |= {"c/yonder/package.xml": manifest.format("yonder"), "c/yonder/part.xacro": GOOD}
-    write(working_directory / "ws", files)
+    files |= {"c/yonder/package.xml": manifest.format("yonder"), "c/yonder/part.xacro": VALID_ROBOT}
+    write_files(working_directory / "ws", files)
     (working_directory / "elsewhere").mkdir()
     monkeypatch.chdir(working_directory / "elsewhere")
     main(["check", "../ws", "--select", "PKG,XAC,XML,URDF"])

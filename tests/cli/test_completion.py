@@ -49,74 +49,74 @@ def _workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
 
 
-def candidates_after(line: str) -> list[str]:
+def complete_line(line: str) -> list[str]:
     return complete(split_line(line))
 
 
 def test_command_names_are_completed() -> None:
-    assert candidates_after("linkwright ")[: len(help_texts())] == list(help_texts())
-    assert candidates_after("linkwright la") == ["launch"]
-    assert "launch" in candidates_after("/some/bin/ros2 ")
-    assert "view" not in candidates_after("ros2 ")
-    assert candidates_after("linkwright topic e") == ["echo"]
-    assert candidates_after("linkwright nonsense ") == []
+    assert complete_line("linkwright ")[: len(help_texts())] == list(help_texts())
+    assert complete_line("linkwright la") == ["launch"]
+    assert "launch" in complete_line("/some/bin/ros2 ")
+    assert "view" not in complete_line("ros2 ")
+    assert complete_line("linkwright topic e") == ["echo"]
+    assert complete_line("linkwright nonsense ") == []
 
 
 def test_options_and_option_values_are_completed() -> None:
-    assert "--no-open" in candidates_after("linkwright launch arm a.launch.py --")
-    assert candidates_after("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
-    assert "--times" in candidates_after("ros2 topic pub /a std_msgs/msg/String '{}' --t")
-    assert candidates_after("linkwright topic pub --rate ") == []
-    assert candidates_after("linkwright topic pub --rate 5 /a std_msgs/msg/Str") == ["std_msgs/msg/String"]
-    assert candidates_after("linkwright completion ") == ["bash", "zsh", "fish"]
+    assert "--no-open" in complete_line("linkwright launch arm a.launch.py --")
+    assert complete_line("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
+    assert "--times" in complete_line("ros2 topic pub /a std_msgs/msg/String '{}' --t")
+    assert complete_line("linkwright topic pub --rate ") == []
+    assert complete_line("linkwright topic pub --rate 5 /a std_msgs/msg/Str") == ["std_msgs/msg/String"]
+    assert complete_line("linkwright completion ") == ["bash", "zsh", "fish"]
 
 
 def test_packages_and_executables_are_completed() -> None:
-    assert candidates_after("linkwright pkg prefix ar") == ["arm"]
-    assert candidates_after("ros2 run arm ") == ["move"]
-    assert candidates_after("ros2 run demo_nodes_cpp ta") == ["talker"]
-    assert {"arm", "hand", "demo_nodes_cpp"} <= set(candidates_after("ros2 run "))
+    assert complete_line("linkwright pkg prefix ar") == ["arm"]
+    assert complete_line("ros2 run arm ") == ["move"]
+    assert complete_line("ros2 run demo_nodes_cpp ta") == ["talker"]
+    assert {"arm", "hand", "demo_nodes_cpp"} <= set(complete_line("ros2 run "))
 
 
 def test_launch_files_and_launch_arguments_are_completed() -> None:
-    assert candidates_after("ros2 launch ar") == ["arm", FILES]
-    assert candidates_after("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
+    assert complete_line("ros2 launch ar") == ["arm", FILES]
+    assert complete_line("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
     for file in ("a.launch.py", "b.launch.xml", "c_launch.yaml"):
-        assert candidates_after(f"ros2 launch arm {file} ") == ["gui:=", "speed:="]
-        assert candidates_after(f"linkwright launch arm/launch/{file} gui:=1 s") == ["speed:="]
-    assert candidates_after("linkwright launch nowhere ") == []
+        assert complete_line(f"ros2 launch arm {file} ") == ["gui:=", "speed:="]
+        assert complete_line(f"linkwright launch arm/launch/{file} gui:=1 s") == ["speed:="]
+    assert complete_line("linkwright launch nowhere ") == []
 
 
 def test_interface_types_are_completed() -> None:
-    assert candidates_after("linkwright topic pub /a arm") == ["arm/msg/Grip"]
-    assert candidates_after("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
-    assert candidates_after("linkwright interface show action_tutorials_interfaces/action/F") == [
+    assert complete_line("linkwright topic pub /a arm") == ["arm/msg/Grip"]
+    assert complete_line("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
+    assert complete_line("linkwright interface show action_tutorials_interfaces/action/F") == [
         "action_tutorials_interfaces/action/Fibonacci"
     ]
 
 
 def test_description_files_and_arguments_are_completed() -> None:
-    assert candidates_after("linkwright view ") == [FILES]
-    assert candidates_after("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second description
+    assert complete_line("linkwright view ") == [FILES]
+    assert complete_line("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second description
 
 
 def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[object] = []
     monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: started.append(words))
-    assert candidates_after("linkwright topic echo /") == []
+    assert complete_line("linkwright topic echo /") == []
     assert len(started) == 1
-    assert candidates_after("linkwright topic echo /") == []
+    assert complete_line("linkwright topic echo /") == []
     assert len(started) == 1  # the first process still runs
     path = graph_names._path()
     path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
-    assert candidates_after("ros2 topic echo /t") == ["/tf"]
-    assert candidates_after("ros2 node info ") == ["/talker"]
-    assert candidates_after("ros2 service call ") == ["/go"]
-    assert candidates_after("ros2 action info ") == ["/turn"]
+    assert complete_line("ros2 topic echo /t") == ["/tf"]
+    assert complete_line("ros2 node info ") == ["/talker"]
+    assert complete_line("ros2 service call ") == ["/go"]
+    assert complete_line("ros2 action info ") == ["/turn"]
     assert len(started) == 1  # the file is fresh
     os.utime(path, (1.0, 1.0))
     path.with_suffix(".begun").unlink()
-    assert candidates_after("ros2 topic echo /t") == []
+    assert complete_line("ros2 topic echo /t") == []
     assert len(started) == 2
 
 
@@ -193,7 +193,7 @@ def test_completion_of_words_from_any_shell(words: list[str], candidates: list[s
 @pytest.mark.parametrize("quote", ["'", '"'])
 def test_completion_inside_open_quote(quote: str) -> None:
     assert complete(["linkwright", "topic", "pub", "/a", f"{quote}arm/msg/"]) == ["arm/msg/Grip"]
-    assert candidates_after(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
+    assert complete_line(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
 
 
 ZSH_WITHOUT_ITS_COMPLETION = """

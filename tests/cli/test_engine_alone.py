@@ -14,7 +14,7 @@ from tests.toml_files import PROJECT, read_toml
 CONTRACT = "The engine imports nothing else; linkwright-core is made of its modules (core/engine_build.py)"
 
 
-def rooms() -> tuple[set[str], set[str]]:
+def read_rooms() -> tuple[set[str], set[str]]:
     """Return the modules of the engine, and the modules that it must not import."""
     contracts = read_toml((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
     (contract,) = (contract for contract in contracts["contracts"] if contract["name"] == CONTRACT)
@@ -22,7 +22,7 @@ def rooms() -> tuple[set[str], set[str]]:
 
 
 def test_every_package_is_in_engine_or_excluded() -> None:
-    engine, other_rooms = rooms()
+    engine, other_rooms = read_rooms()
     package = REPOSITORY / "src" / "linkwright"
     found_rooms = {f"linkwright.{folder.parent.name}" for folder in package.glob("*/__init__.py")} - {"linkwright.cli"}
     assert found_rooms == {name for name in engine | other_rooms if not name.startswith("linkwright.cli.")}

@@ -16,7 +16,7 @@ from tests.domains import own_domain
 from tests.waiting import TIMEOUT_S
 
 
-def carries_multicast() -> bool:
+def can_multicast() -> bool:
     port = random.SystemRandom().randrange(16_000, 18_000)
     try:
         with multicast.open_receiver(port=port) as receiver, multicast.open_sender() as sender:
@@ -28,7 +28,7 @@ def carries_multicast() -> bool:
     return True
 
 
-with_multicast = pytest.mark.skipif(not carries_multicast(), reason="this machine has no interface with multicast")
+with_multicast = pytest.mark.skipif(not can_multicast(), reason="this machine has no interface with multicast")
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.lsp.conftest import MAIN, PARTS, connected
+from tests.lsp.conftest import MAIN, PARTS, connect_editor
 
 FILE = "urdf/arm.urdf.xacro"
 CURSOR = "█"
@@ -22,7 +22,7 @@ async def complete(editor, text: str, name: str = FILE) -> list[str]:
     return [item.label for item in completions]
 
 
-async def look(editor, request, kind):
+async def request_at_cursor(editor, request, kind):
     text = MAIN.replace('length="0.4"', 'length="${2 * reach}"').replace(
         '<link name="base"/>', '<xacro:property name="reach" value="0.2"/>\n  <link name="base"/>'
     )
@@ -66,13 +66,13 @@ async def test_hover_explains_elements_attributes_and_names(editor):
         hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), position))
         return "" if hover is None else hover.contents.value
 
-    assert "`<link>`" in await look(editor, "<lin", hover)
-    assert "**macro bar**" in await look(editor, "<xacro:ba", hover)
-    assert "`name length`" in await look(editor, "<xacro:ba", hover)
-    assert "**property reach** = `0.2`" in await look(editor, "* rea", hover)
-    assert await look(editor, "<xacro:bar na", hover) == "**name** (required), xacro:bar, parts.xacro"
-    assert "name" in await look(editor, "<link na", hover)
-    assert await look(editor, "\n", hover) == ""
+    assert "`<link>`" in await request_at_cursor(editor, "<lin", hover)
+    assert "**macro bar**" in await request_at_cursor(editor, "<xacro:ba", hover)
+    assert "`name length`" in await request_at_cursor(editor, "<xacro:ba", hover)
+    assert "**property reach** = `0.2`" in await request_at_cursor(editor, "* rea", hover)
+    assert await request_at_cursor(editor, "<xacro:bar na", hover) == "**name** (required), xacro:bar, parts.xacro"
+    assert "name" in await request_at_cursor(editor, "<link na", hover)
+    assert await request_at_cursor(editor, "\n", hover) == ""
 
 
 async def test_definition_is_found_in_included_file(editor):
@@ -83,9 +83,9 @@ async def test_definition_is_found_in_included_file(editor):
             for definition in await editor.client.text_document_definition_async(parameters)
         ]
 
-    assert await look(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
-    assert await look(editor, "* rea", define) == [("arm.urdf.xacro", 2)]
-    assert await look(editor, "<xacro:bar na", define) == [("parts.xacro", 1)]
+    assert await request_at_cursor(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
+    assert await request_at_cursor(editor, "* rea", define) == [("arm.urdf.xacro", 2)]
+    assert await request_at_cursor(editor, "<xacro:bar na", define) == [("parts.xacro", 1)]
 
 
 async def test_hover_describes_links_joints_meshes_and_packages(editor, package):
@@ -136,7 +136,7 @@ async def test_hover_of_link_uses_facts_of_its_own_file(package):
         template.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
     )
     shown = {}
-    async with connected(package, types.ClientCapabilities()) as editor:
+    async with connect_editor(package, types.ClientCapabilities()) as editor:
         for name, mass in masses.items():
             editor.open(f"urdf/{name}.xacro")
             position = types.Position(0, arm.format(name, mass).index('"elbow"') + 2)

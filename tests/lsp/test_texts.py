@@ -14,13 +14,13 @@ OPTIONS = types.FormattingOptions(2, insert_spaces=True)
 MESSY = MAIN.replace('  <link name="base"/>', '      <link   name="base"/>').replace("  <xacro:bar", "<xacro:bar")
 
 
-def place(text: str, mark: str, after: int = 0) -> types.Position:
+def find_position(text: str, mark: str, after: int = 0) -> types.Position:
     """Return the position of a mark in a text."""
     before = text[: text.index(mark) + after]
     return types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
 
 
-def applied(text: str, edits) -> str:
+def apply_edits(text: str, edits) -> str:
     """Return a text with the edits of the server."""
     lines = text.splitlines(keepends=True)
     for edit in sorted(edits, key=lambda edit: edit.range.start.line, reverse=True):
@@ -34,12 +34,12 @@ async def test_formatting_matches_format_command(editor):
     edits = await editor.client.text_document_formatting_async(
         types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
     )
-    assert applied(MESSY, edits) == MAIN
-    selected_range = types.Range(place(MESSY, "      <link"), place(MESSY, "<xacro:bar"))
+    assert apply_edits(MESSY, edits) == MAIN
+    selected_range = types.Range(find_position(MESSY, "      <link"), find_position(MESSY, "<xacro:bar"))
     edits = await editor.client.text_document_range_formatting_async(
         types.DocumentRangeFormattingParams(editor.document(FILE), selected_range, OPTIONS)
     )
-    assert '  <link name="base"/>\n' in applied(MESSY, edits)
+    assert '  <link name="base"/>\n' in apply_edits(MESSY, edits)
 
 
 async def test_malformed_xml_is_not_formatted(editor):
@@ -65,7 +65,7 @@ async def test_folds_selections_and_linked_tags_are_returned(editor):
     folds = await editor.client.text_document_folding_range_async(types.FoldingRangeParams(document))
     assert [(fold.start_line, fold.end_line) for fold in folds] == [(0, 8), (1, 7), (3, 6)]
     (selection,) = await editor.client.text_document_selection_range_async(
-        types.SelectionRangeParams(document, [place(text, "continuous", 2)])
+        types.SelectionRangeParams(document, [find_position(text, "continuous", 2)])
     )
     lengths = []
     while selection is not None:
@@ -75,7 +75,7 @@ async def test_folds_selections_and_linked_tags_are_returned(editor):
     written = ("continuous", 'type="continuous"', '<joint name="${name}_joint" type="continuous">')
     assert lengths[:3] == [(0, len(text)) for text in written]
     linked = await editor.client.text_document_linked_editing_range_async(
-        types.LinkedEditingRangeParams(document, place(text, "<joint", 3))
+        types.LinkedEditingRangeParams(document, find_position(text, "<joint", 3))
     )
     assert [linked_range.start.line for linked_range in linked.ranges] == [3, 7]
 

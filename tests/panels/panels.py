@@ -50,5 +50,5 @@ def window_state(collapsed: tuple[str, ...] = (), hide_right: bool = False, **hi
     return "\n".join([*lines, "  Width: 1200\n"])
 
 
-def panels_of(config: RvizConfig) -> list[str] | None:
+def open_panels(config: RvizConfig) -> list[str] | None:
     return config.panels.shown

@@ -50,7 +50,7 @@ NEW = """\
 """
 
 
-class Compared:
+class ComparisonViewer:
     """A viewer that compares two files."""
 
     def __init__(self, world: World, folder: Path, old: str, new: str) -> None:
@@ -97,27 +97,29 @@ class Compared:
 
 
 @asynccontextmanager
-async def compared(folder: Path, old: str = OLD, new: str = NEW) -> AsyncIterator[tuple[Compared, Client]]:
+async def open_comparison(
+    folder: Path, old: str = OLD, new: str = NEW
+) -> AsyncIterator[tuple[ComparisonViewer, Client]]:
     config = RvizConfig.for_model("base")
     add_old_robot(config, "old.urdf")
     async with open_world(config) as world:
-        comparison = Compared(world, folder, old, new)
+        comparison = ComparisonViewer(world, folder, old, new)
         async with page(world.viewer) as client:
             yield comparison, client
 
 
-def marks(message: dict, side: str) -> dict[str, str]:
+def difference_marks(message: dict, side: str) -> dict[str, str]:
     return message[side]["marks"]
 
 
 async def test_page_receives_differences_with_links(tmp_path):
-    async with compared(tmp_path) as (comparison, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         message = await client.until("compared_descriptions")
         displays = [display.id for display in comparison.world.viewer.displays if display.CLASS.endswith("RobotModel")]
         assert [message["new"]["display"], message["old"]["display"]] == displays
         assert message["new"]["label"].endswith("new.urdf")
-        assert marks(message, "old") == {"camera": "removed"}
-        assert marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
+        assert difference_marks(message, "old") == {"camera": "removed"}
+        assert difference_marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
         assert message["joints"] == {"turn": "spin"}, "a joint of another type has no counterpart"
         items = {(item["subject"], item["name"], item["property"]): item for item in message["items"]}
         mass = items["link", "lower", "inertial mass"]
@@ -140,7 +142,7 @@ async def test_page_receives_differences_with_links(tmp_path):
 
 
 async def test_old_robot_follows_joints_of_new_robot(tmp_path):
-    async with compared(tmp_path) as (comparison, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         await client.until("compared_descriptions")
         await eventually(lambda: comparison.pose("old/camera") is not None)
         assert comparison.pose("old/lower") == pytest.approx([0, 0, 0, 0, 0, 0, 1], abs=1e-6)
@@ -161,30 +163,30 @@ async def test_new_root_moves_old_robot(tmp_path):
         '<joint name="fix" type="fixed"><parent link="upper"/><child link="lidar"/></joint>',
         '<joint name="fix" type="fixed"><origin xyz="0 0 3"/><parent link="foot"/><child link="base"/></joint>',
     )
-    async with compared(tmp_path, robot_with_foot, NEW) as (comparison, client):
+    async with open_comparison(tmp_path, robot_with_foot, NEW) as (comparison, client):
         message = await client.until("compared_descriptions")
-        assert marks(message, "old") == {"foot": "removed"}
+        assert difference_marks(message, "old") == {"foot": "removed"}
         await eventually(lambda: comparison.pose("old/foot") is not None)
         assert comparison.pose("old/base")[:3] == pytest.approx([0, 0, 0], abs=1e-6)
         assert comparison.pose("old/foot")[:3] == pytest.approx([0, 0, -3], abs=1e-6)
 
 
 async def test_edited_description_is_compared_again(tmp_path):
-    async with compared(tmp_path) as (comparison, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         count = len((await client.until("compared_descriptions"))["items"])
         comparison.write(tmp_path, "new.urdf", NEW.replace('mass value="2"', 'mass value="1"'))
         comparison.show_new()
         fewer = await client.until("compared_descriptions")
         assert len(fewer["items"]) == count - 1
-        assert "lower" in marks(fewer, "new"), "the name of its joint differs"
+        assert "lower" in difference_marks(fewer, "new"), "the name of its joint differs"
         comparison.write(tmp_path, "old.urdf", comparison.pair.new.path.read_text(encoding="utf-8"))
         comparison.show_old()
         message = await client.until("compared_descriptions")
-        assert (message["items"], marks(message, "new"), marks(message, "old")) == ([], {}, {})
+        assert (message["items"], difference_marks(message, "new"), difference_marks(message, "old")) == ([], {}, {})
 
 
 async def test_source_text_of_both_descriptions_can_be_requested(tmp_path):
-    async with compared(tmp_path, NEW, NEW) as (comparison, client):
+    async with open_comparison(tmp_path, NEW, NEW) as (comparison, client):
         message = await client.until("compared_descriptions")
         assert message["items"] == []
         for side, name in (("old", "old.urdf"), ("new", "new.urdf")):
@@ -195,7 +197,7 @@ async def test_source_text_of_both_descriptions_can_be_requested(tmp_path):
 
 
 async def test_removed_old_display_is_reported_as_empty(tmp_path):
-    async with compared(tmp_path) as (comparison, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         message = await client.until("compared_descriptions")
         await client.send("remove_displays", displays=[message["old"]["display"]])
         assert (await client.until("compared_descriptions"))["old"]["display"] == ""
@@ -203,7 +205,7 @@ async def test_removed_old_display_is_reported_as_empty(tmp_path):
 
 
 async def test_exported_comparison_contains_no_paths(tmp_path):
-    async with compared(tmp_path) as (comparison, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         await client.until("compared_descriptions")
         manager = comparison.world.viewer.manager
         result = next(

@@ -48,11 +48,11 @@ def describe(world: Any, file: Path) -> None:
     world.describe(world.library.store(examine(file)))
 
 
-def content(file: Path) -> str:
+def file_content(file: Path) -> str:
     return file.read_text()
 
 
-def write(file: Path, text: str) -> None:
+def write_file(file: Path, text: str) -> None:
     file.write_text(text)
 
 
@@ -70,7 +70,7 @@ async def request_parts(client: Any, link: str) -> dict[str, Any]:
     return await request(client, "request_editable_parts", "editable_parts", display=DISPLAY, link=link)
 
 
-async def preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
+async def request_preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
     question = {"index": 0, "xyz": None, "rpy": None, "together": False, **fields}
     return await request(
         client, "preview_edit", "edit_preview", number=number, display=DISPLAY, part=part, name=name, **question
@@ -114,7 +114,7 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
         await client.until("description_changed")
         response = await request_parts(client, "base")
         assert "described in SDF" in response["refusal_reason"]
-        refused = await preview(client, 1, "visual", "base", xyz=[0, 0, 1])
+        refused = await request_preview(client, 1, "visual", "base", xyz=[0, 0, 1])
         assert refused["files"] == []
         assert refused["refusal"]["message"] == response["refusal_reason"]
 
@@ -123,45 +123,45 @@ async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        shown = await preview(client, 7, "joint", "turn", xyz=[0, 0, 0.3])
+        shown = await request_preview(client, 7, "joint", "turn", xyz=[0, 0, 0.3])
         assert (shown["number"], shown["refusal"], shown["also"]) == (7, None, [])
         (changed,) = shown["files"]
         assert changed["file"] == str(file)
         old, new = '  <xacro:property name="height" value="0.25"/>', '  <xacro:property name="height" value="0.3"/>'
         assert [line for line in changed["diff"] if line[0] in "+-"] == [f"-{old}", f"+{new}"]
-        assert content(file) == ROBOT
+        assert file_content(file) == ROBOT
 
         written = await request(client, "apply_edit", "edit_written", number=7)
         assert (written["files"], written["refusal"]) == ([str(file)], None)
-        assert content(file) == ROBOT.replace(old, new)
+        assert file_content(file) == ROBOT.replace(old, new)
         history = await client.until("edit_history")
         assert (history["can_undo"], history["can_redo"]) == (True, False)
 
         await request(client, "undo_edit", "edit_written")
-        assert content(file) == ROBOT
+        assert file_content(file) == ROBOT
         await request(client, "redo_edit", "edit_written")
-        assert content(file) == ROBOT.replace(old, new)
+        assert file_content(file) == ROBOT.replace(old, new)
 
 
 async def test_only_previewed_edit_is_written(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
+        await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
         assert (await request(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
-        assert content(file) == ROBOT
+        assert file_content(file) == ROBOT
 
 
 async def test_edit_with_side_effects_requires_together_option(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        refused = await preview(client, 1, "joint", "left_joint", xyz=[0, 0, 0.2])
+        refused = await request_preview(client, 1, "joint", "left_joint", xyz=[0, 0, 0.2])
         assert refused["files"] == []
         assert refused["refusal"]["code"] == "EDIT104"
         assert refused["refusal"]["line"] == 7
         assert "right_joint" in refused["refusal"]["message"]
-        shown = await preview(client, 2, "joint", "left_joint", xyz=[0, 0, 0.2], together=True)
+        shown = await request_preview(client, 2, "joint", "left_joint", xyz=[0, 0, 0.2], together=True)
         assert (shown["refusal"], shown["also"]) == (None, ["joint 'right_joint'"])
 
 
@@ -169,23 +169,23 @@ async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
-        write(file, ROBOT + "<!-- mine -->")
+        await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
+        write_file(file, ROBOT + "<!-- mine -->")
         assert (await request(client, "apply_edit", "edit_written", number=1))["refusal"]["code"] == "EDIT107"
-        assert content(file) == ROBOT + "<!-- mine -->"
+        assert file_content(file) == ROBOT + "<!-- mine -->"
 
 
 async def test_malformed_or_missing_file_is_reported_and_editing_continues(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        write(file, "<robot")
-        assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"].startswith("XML")
+        write_file(file, "<robot")
+        assert (await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"].startswith("XML")
         delete_file(file)
-        assert (await preview(client, 2, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is not None
-        write(file, ROBOT)
-        assert (await preview(client, 3, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is None
-        assert (await preview(client, 4, "joint", "turn", xyz=[0, 1]))["refusal"]["code"] == "EDIT102"
+        assert (await request_preview(client, 2, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is not None
+        write_file(file, ROBOT)
+        assert (await request_preview(client, 3, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is None
+        assert (await request_preview(client, 4, "joint", "turn", xyz=[0, 1]))["refusal"]["code"] == "EDIT102"
 
 
 async def test_description_without_file_cannot_be_edited(file: Path) -> None:
@@ -194,7 +194,7 @@ async def test_description_without_file_cannot_be_edited(file: Path) -> None:
         await client.until("description_changed")
         response = await request_parts(client, "base")
         assert "linkwright view FILE" in response["refusal_reason"]
-        assert (await preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
+        assert (await request_preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
 
 
 async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,6 +209,6 @@ async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pyte
         describe(world, file)
         await client.until("description_changed")
         assert "open on the machine with the files" in (await request_parts(client, "mast"))["refusal_reason"]
-        assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
+        assert (await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
         assert (await request(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
-    assert content(file) == ROBOT
+    assert file_content(file) == ROBOT

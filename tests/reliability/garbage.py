@@ -24,7 +24,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from linkwright.wire.dds.settings import read_settings
-from tests.wire.ros_peer import as_bytes, make_type, text
+from tests.wire.ros_peer import as_bytes, make_type, read_text
 
 ROUND_COUNT = 40
 HEADER = b"\0\1\0\0"
@@ -102,7 +102,7 @@ def main() -> None:
                 written += 1
         print("written", name, written, flush=True)
     time.sleep(0.5)
-    writers["rt/words"].write(string(HEADER + text("fine")))
+    writers["rt/words"].write(string(HEADER + read_text("fine")))
     print("last", flush=True)
     while not Path("leave").exists():  # gives receivers the time to read the last message
         time.sleep(0.01)

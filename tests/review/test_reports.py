@@ -102,7 +102,7 @@ def test_repository_names_are_escaped():
     assert "`" not in markdown.replace("```", "")
     assert "&commat;" not in markdown
     assert "&lt;" not in markdown
-    tags = _tags(page)
+    tags = _read_tags(page)
     assert "img" not in tags
     assert tags.count("script") == 1
 
@@ -224,7 +224,7 @@ def test_error_is_printed_without_traceback(run):
     assert "Traceback" not in errors
 
 
-def _tags(page: str) -> list[str]:
+def _read_tags(page: str) -> list[str]:
     class Reader(HTMLParser):
         def handle_starttag(self, tag, attrs):
             tags.append(tag)

@@ -16,7 +16,7 @@ from linkwright.xmltree import parse
 from tests.page.test_files import package, write
 
 
-def built(text: str, prefix: str = "", packages: dict[str, Path] | None = None, name: str = "<text>"):
+def build_scene_of(text: str, prefix: str = "", packages: dict[str, Path] | None = None, name: str = "<text>"):
     finder = PackageFinder(start=Path("/nonexistent"), environment={}, extra=packages or {})
     builder = SceneBuilder(MeshIndex(finder))
     reading = read(parse(text, name))
@@ -24,11 +24,11 @@ def built(text: str, prefix: str = "", packages: dict[str, Path] | None = None, 
     return {link.name: link for link in builder.links(reading.robot, prefix)}, builder
 
 
-def robot(visuals: str, materials: str = "") -> str:
+def robot_text(visuals: str, materials: str = "") -> str:
     return f'<robot name="r">{materials}<link name="base">{visuals}</link></robot>'
 
 
-def visual(geometry: str, material: str = "", tag: str = "visual") -> str:
+def visual_element(geometry: str, material: str = "", tag: str = "visual") -> str:
     return f"<{tag}><geometry>{geometry}</geometry>{material}</{tag}>"
 
 
@@ -41,20 +41,20 @@ def visual(geometry: str, material: str = "", tag: str = "visual") -> str:
     ],
 )
 def test_shapes_have_their_sizes(geometry, kind, size):
-    links, _ = built(robot(visual(geometry)))
+    links, _ = build_scene_of(robot_text(visual_element(geometry)))
     (shape,) = links["base"].visuals
     assert (shape.kind, shape.size) == (kind, size)
 
 
 def test_capsule_of_urdf_1_1_is_built():
-    text = robot(visual('<capsule radius="1" length="2"/>')).replace('name="r"', 'name="r" version="1.1"')
-    (shape,) = built(text)[0]["base"].visuals
+    text = robot_text(visual_element('<capsule radius="1" length="2"/>')).replace('name="r"', 'name="r" version="1.1"')
+    (shape,) = build_scene_of(text)[0]["base"].visuals
     assert (shape.kind, shape.size) == ("capsule", [1, 2])
 
 
 def test_visual_pose_matches_origin():
-    links, _ = built(
-        robot(
+    links, _ = build_scene_of(
+        robot_text(
             f'<visual><origin xyz="1 2 3" rpy="0 0 {math.pi / 2}"/><geometry><sphere radius="1"/></geometry></visual>'
         )
     )
@@ -65,13 +65,13 @@ def test_visual_pose_matches_origin():
 
 def test_visual_colors_follow_materials():
     box = '<box size="1 1 1"/>'
-    links, _ = built(
-        robot(
-            visual(box, '<material name="blue"/>')
-            + visual(box, '<material name="own"><color rgba="1 0 0 0.5"/></material>')
-            + visual(box)
-            + visual(box, '<material name="undefined"/>')
-            + visual(box, tag="collision"),
+    links, _ = build_scene_of(
+        robot_text(
+            visual_element(box, '<material name="blue"/>')
+            + visual_element(box, '<material name="own"><color rgba="1 0 0 0.5"/></material>')
+            + visual_element(box)
+            + visual_element(box, '<material name="undefined"/>')
+            + visual_element(box, tag="collision"),
             '<material name="blue"><color rgba="0 0 1 1"/></material>',
         )
     )
@@ -85,7 +85,7 @@ def test_links_have_frame_joint_and_source_location():
   <link name="tip"/>
   <joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>
 </robot>"""
-    links, _ = built(text, prefix="one", name="/some/r.urdf")
+    links, _ = build_scene_of(text, prefix="one", name="/some/r.urdf")
     assert (links["base"].parent_joint, links["tip"].parent_joint) == (None, "j")
     assert (links["tip"].frame, frame_of("tip", "")) == ("one/tip", "tip")
     place = links["tip"].place
@@ -113,8 +113,8 @@ def test_links_from_macros_have_macro_call_locations(tmp_path):
 def test_meshes_have_url_format_and_scale(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "meshes" / "arm.STL")
-    links, builder = built(
-        robot(visual('<mesh filename="package://robot/meshes/arm.STL" scale="0.001 0.001 0.001"/>')),
+    links, builder = build_scene_of(
+        robot_text(visual_element('<mesh filename="package://robot/meshes/arm.STL" scale="0.001 0.001 0.001"/>')),
         packages={"robot": share},
     )
     (shape,) = links["base"].visuals
@@ -126,18 +126,18 @@ def test_meshes_have_url_format_and_scale(tmp_path):
 
 def test_relative_mesh_paths_are_resolved_from_naming_file(tmp_path):
     write(tmp_path / "meshes" / "arm.obj")
-    text = robot(visual('<mesh filename="../meshes/arm.obj"/>'))
-    links, _ = built(text, name=str(tmp_path / "urdf" / "r.urdf"))
+    text = robot_text(visual_element('<mesh filename="../meshes/arm.obj"/>'))
+    links, _ = build_scene_of(text, name=str(tmp_path / "urdf" / "r.urdf"))
     assert links["base"].visuals[0].url
 
 
 def test_missing_meshes_are_reported_with_searched_paths(tmp_path):
     share = package(tmp_path / "robot", "robot")
-    links, builder = built(
-        robot(
-            visual('<mesh filename="package://robot/meshes/gone.dae"/>')
-            + visual('<mesh filename="package://nobody/a.dae"/>', tag="collision")
-            + visual(
+    links, builder = build_scene_of(
+        robot_text(
+            visual_element('<mesh filename="package://robot/meshes/gone.dae"/>')
+            + visual_element('<mesh filename="package://nobody/a.dae"/>', tag="collision")
+            + visual_element(
                 '<box size="1 1 1"/>', '<material name="w"><texture filename="package://robot/wood.png"/></material>'
             )
         ),
@@ -155,5 +155,5 @@ def test_textures_have_url(tmp_path):
     share = package(tmp_path / "robot", "robot")
     write(share / "wood.png")
     material = '<material name="w"><color rgba="1 1 1 1"/><texture filename="package://robot/wood.png"/></material>'
-    links, _ = built(robot(visual('<box size="1 1 1"/>', material)), packages={"robot": share})
+    links, _ = build_scene_of(robot_text(visual_element('<box size="1 1 1"/>', material)), packages={"robot": share})
     assert "/wood.png?v=" in links["base"].visuals[0].texture

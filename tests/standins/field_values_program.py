@@ -72,7 +72,7 @@ CASES = {
 }
 
 
-def came_of(assign, field):
+def outcome_of(assign, field):
     try:
         value = getattr(assign(), field)
     except AssertionError as error:
@@ -83,7 +83,7 @@ def came_of(assign, field):
     return [type(value).__name__, values]
 
 
-def with_setter(message_class, field, value):
+def set_field(message_class, field, value):
     message = message_class()
     setattr(message, field, value)
     return message
@@ -94,10 +94,10 @@ def main():
     for (message_class, field), values in CASES.items():
         for name, value in values.items():
             for way, assign in (
-                ("set", lambda: with_setter(message_class, field, value)),  # noqa: B023 - called at once
+                ("set", lambda: set_field(message_class, field, value)),  # noqa: B023 - called at once
                 ("made", lambda: message_class(**{field: value})),  # noqa: B023
             ):
-                facts[f"{message_class.__name__}.{field} {way} of {name}"] = came_of(assign, field)
+                facts[f"{message_class.__name__}.{field} {way} of {name}"] = outcome_of(assign, field)
     print(json.dumps(facts))
 
 

@@ -66,7 +66,7 @@ class Listener(Node):
 
 
 @pytest.fixture(autouse=True)
-def _alone(monkeypatch):
+def _isolated(monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
 
@@ -161,7 +161,7 @@ class TestMinimal:
         assert not thread.is_alive()
 
     def test_synchronous_call_works_beside_spinning_thread(self, node):
-        node.create_service(AddTwoInts, "add", _sum)
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add")
         executor = SingleThreadedExecutor()
         executor.add_node(node)
@@ -173,7 +173,7 @@ class TestMinimal:
 
     def test_synchronous_call_works_in_callback_of_reentrant_group(self, node):
         responses = []
-        node.create_service(AddTwoInts, "add", _sum)
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add", callback_group=ReentrantCallbackGroup())
 
         def ask():
@@ -190,7 +190,7 @@ class TestMinimal:
         assert responses == [5]
 
     def test_deadlocking_call_raises_runtime_error(self, node):
-        node.create_service(AddTwoInts, "add", _sum)
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add")
         node.create_timer(0.01, lambda: client.call(AddTwoInts.Request()))
         with pytest.raises(RuntimeError, match="call_async"):
@@ -198,7 +198,7 @@ class TestMinimal:
 
     def test_coroutine_awaits_service_call(self, node):
         responses = []
-        node.create_service(AddTwoInts, "add", _sum)
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add")
 
         async def ask():
@@ -224,7 +224,7 @@ class TestMinimal:
 
     def test_done_callbacks_run_in_executor(self, node):
         events = []
-        node.create_service(AddTwoInts, "add", _sum)
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
         future.add_done_callback(lambda future: events.append(future.result().sum))
         end = time.monotonic() + TIMEOUT_S
@@ -522,6 +522,6 @@ class TestParameters:
         assert publisher.qos_profile.depth == 7
 
 
-def _sum(request, response):
+def _add_two_ints(request, response):
     response.sum = request.a + request.b
     return response

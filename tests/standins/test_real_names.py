@@ -14,7 +14,7 @@ PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 GONE_SINCE_HUMBLE = {"rclpy.time.CONVERSION_CONSTANT", "rclpy.qos_overriding_options._declare_qos_parameteres"}
 AFTER_JAZZY = ("kilted", "rolling")
 
-LOOK = """
+INSPECTION_PROGRAM = """
 import importlib, json, sys
 lacking = []
 for module, names in json.load(sys.stdin).items():
@@ -36,7 +36,7 @@ def test_real_modules_have_names_of_tables(package):
         if module.since not in AFTER_JAZZY
     }
     result = subprocess.run(
-        [PYTHON, "-c", LOOK],
+        [PYTHON, "-c", INSPECTION_PROGRAM],
         input=json.dumps(requested_names),
         env={**os.environ, "PYTHONPATH": ""},
         capture_output=True,

@@ -16,7 +16,7 @@ ANGLES = st.floats(-3.0, 3.0)
 UNIT = st.floats(0.0, 1.0)
 
 
-def turn(axis: int, angle: float) -> np.ndarray:
+def rotation_matrix(axis: int, angle: float) -> np.ndarray:
     cosine, sine = math.cos(angle), math.sin(angle)
     b, c = (axis + 1) % 3, (axis + 2) % 3
     matrix = np.eye(3)
@@ -37,7 +37,9 @@ def test_all_24_axis_conventions_are_supported():
 @pytest.mark.parametrize("axes", AXES)
 @given(i=ANGLES, j=ANGLES, k=ANGLES)
 def test_euler_matrix_rotates_about_axes_in_order(axes, i, j, k):
-    first, second, third = (turn("xyz".index(letter), angle) for letter, angle in zip(axes[1:], (i, j, k), strict=True))
+    first, second, third = (
+        rotation_matrix("xyz".index(letter), angle) for letter, angle in zip(axes[1:], (i, j, k), strict=True)
+    )
     expected = third @ second @ first if axes[0] == "s" else first @ second @ third
     assert tf.euler_matrix(i, j, k, axes)[:3, :3] == pytest.approx(expected, abs=1e-9)
 

@@ -34,9 +34,9 @@ class LoadPeer(Node):
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.declare_parameters("", [(f"number_{number}", number) for number in range(10)])
-        self.create_service(SetBool, f"/{name}/flip", flip)
-        self.create_service(BasicTypes, f"/{name}/basic", basic)
-        self.create_service(SetCameraInfo, f"/{name}/camera", camera)
+        self.create_service(SetBool, f"/{name}/flip", answer_set_bool)
+        self.create_service(BasicTypes, f"/{name}/basic", answer_basic_types)
+        self.create_service(SetCameraInfo, f"/{name}/camera", answer_camera_info)
         self._current: Any = None
         self._lock = threading.Lock()
         self._server = ActionServer(
@@ -71,7 +71,7 @@ class LoadPeer(Node):
         for number in range(count):
             if not slots.acquire(timeout=TIMEOUT_S):
                 break
-            future = clients[number % 4].call_async(request(number, tag))
+            future = clients[number % 4].call_async(make_request(number, tag))
             future.add_done_callback(lambda _: slots.release())
             futures.append(future)
         for _ in range(MAX_PENDING_CALLS):
@@ -132,7 +132,7 @@ class LoadPeer(Node):
         self._received_count += 1
 
 
-def request(number: int, tag: str) -> Any:
+def make_request(number: int, tag: str) -> Any:
     """Return request n; the four kinds of services take turns."""
     if number % 4 == 0:
         return SetBool.Request(data=number % 8 == 0)
@@ -156,17 +156,17 @@ def is_correct(number: int, tag: str, response: Any) -> bool:
     return [value.integer_value for value in response.values] == [number % 10]
 
 
-def flip(request: Any, response: Any) -> Any:
+def answer_set_bool(request: Any, response: Any) -> Any:
     response.success = not request.data
     return response
 
 
-def basic(request: Any, response: Any) -> Any:
+def answer_basic_types(request: Any, response: Any) -> Any:
     response.int64_value, response.string_value = -request.int64_value, f"{request.string_value} {request.int64_value}"
     return response
 
 
-def camera(request: Any, response: Any) -> Any:
+def answer_camera_info(request: Any, response: Any) -> Any:
     response.success, response.status_message = True, request.camera_info.distortion_model
     return response
 

@@ -70,7 +70,7 @@ class ManagedPeer(LifecycleNode):
         goals = [result_of(client.send_goal_async(Fibonacci.Goal(order=number % 5 + 2))) for number in range(count)]
         results = [result_of(goal.get_result_async()).result for goal in goals]
         client.destroy()
-        return sum(list(result.sequence) == fibonacci(number % 5 + 2) for number, result in enumerate(results))
+        return sum(list(result.sequence) == fibonacci_sequence(number % 5 + 2) for number, result in enumerate(results))
 
     def watch(self, node: str) -> None:
         self.create_subscription(
@@ -113,7 +113,7 @@ class ManagedPeer(LifecycleNode):
         deadline = time.monotonic() + TIMEOUT_S
         while not self.count_subscribers(f"{self._action}/_action/feedback") and time.monotonic() < deadline:
             time.sleep(0.01)  # a request may arrive before the feedback publisher has discovered its client
-        sequence = fibonacci(1)
+        sequence = fibonacci_sequence(1)
         for _ in range(goal.request.order - 1):
             if goal.is_cancel_requested:
                 goal.canceled()
@@ -141,7 +141,7 @@ class ManagedPeer(LifecycleNode):
         return response
 
 
-def fibonacci(order: int) -> list[int]:
+def fibonacci_sequence(order: int) -> list[int]:
     sequence = [0, 1]
     while len(sequence) <= order:
         sequence.append(sequence[-1] + sequence[-2])

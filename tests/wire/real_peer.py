@@ -27,10 +27,10 @@ from std_srvs.srv import SetBool
 from tests.wire.node_program import result_of
 from tests.wire.programs import serve
 
-LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 KINDS = {
     "": (String, 10),
-    "lasting_": (String, LASTING),
+    "lasting_": (String, TRANSIENT_LOCAL),
     "states_": (JointState, 200),
     "images_": (Image, 50),
     "frames_": (Image, QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)),

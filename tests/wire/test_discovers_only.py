@@ -57,8 +57,8 @@ def test_wait_for_discovery_ends_without_peers(observer, never_settled):
 
 @on_linux
 def test_wait_for_discovery_ends_when_all_processes_are_discovered(programs, never_settled):
-    programs("our_program", "one")
-    programs("our_program", "two")
+    programs("linkwright_program", "one")
+    programs("linkwright_program", "two")
     graph = Graph(threads=True)
     transport = join(graph, discovers_only=True)
     assert transport is not None

@@ -15,7 +15,7 @@ from linkwright.wire.dds.remote import RemoteEndpoint
 from tests.waiting import TIMEOUT_S, wait_until
 
 
-def names(process):
+def remote_node_names(process):
     return sorted(name for name, _ in process.node.get_node_names_and_namespaces())
 
 
@@ -23,17 +23,17 @@ def test_nodes_appear_and_disappear(processes):
     a, b = processes("a"), processes("b")
     extra = b.graph.create_node("extra", namespace="/deep/er")
     a.spin_until(lambda: NodeIdentity("extra", "/deep/er") in a.transport.remote_nodes())
-    assert names(a) == ["a", "b", "extra"]
+    assert remote_node_names(a) == ["a", "b", "extra"]
     extra.destroy_node()
-    a.spin_until(lambda: names(a) == ["a", "b"])
+    a.spin_until(lambda: remote_node_names(a) == ["a", "b"])
     b.close()
-    a.spin_until(lambda: names(a) == ["a"])
+    a.spin_until(lambda: remote_node_names(a) == ["a"])
 
 
 def test_nodes_with_duplicate_names_are_listed_separately(processes):
     a, b = processes("a"), processes("twin")
     b.graph.create_node("twin")
-    a.spin_until(lambda: names(a) == ["a", "twin", "twin"])
+    a.spin_until(lambda: remote_node_names(a) == ["a", "twin", "twin"])
 
 
 def test_graph_watchers_are_notified(processes):
@@ -41,7 +41,7 @@ def test_graph_watchers_are_notified(processes):
     changes: list[int] = []
     a.transport.watch(lambda: changes.append(1))
     b = processes("b")
-    a.spin_until(lambda: changes and "b" in names(a))
+    a.spin_until(lambda: changes and "b" in remote_node_names(a))
     count_before = len(changes)
     b.node.create_publisher(String, "chatter", 10)
     a.spin_until(lambda: len(changes) > count_before and a.node.count_publishers("chatter") == 1)
@@ -59,8 +59,8 @@ def test_endpoints_of_nodes_are_discovered(processes):
 
 
 def test_wait_for_discovery_ends_when_all_nodes_are_discovered(processes, programs):
-    programs("our_program", "one")
-    programs("our_program", "two")
+    programs("linkwright_program", "one")
+    programs("linkwright_program", "two")
     process = processes("ours")
     assert process.transport.wait_for_discovery(TIMEOUT_S)
     assert {node.name for node in process.transport.remote_nodes()} == {"one", "two"}
@@ -101,12 +101,12 @@ def test_wait_for_discovery_ends_soon_without_peers(processes):
 
 def test_killed_process_and_its_successor_are_listed_once(processes, programs):
     process = processes("ours")
-    first = programs("our_program", "worker")
-    process.spin_until(lambda: names(process) == ["ours", "worker"])
+    first = programs("linkwright_program", "worker")
+    process.spin_until(lambda: remote_node_names(process) == ["ours", "worker"])
     first.kill()
-    process.spin_until(lambda: names(process) == ["ours"], 2)
-    programs("our_program", "worker")
-    process.spin_until(lambda: names(process) == ["ours", "worker"])
+    process.spin_until(lambda: remote_node_names(process) == ["ours"], 2)
+    programs("linkwright_program", "worker")
+    process.spin_until(lambda: remote_node_names(process) == ["ours", "worker"])
 
 
 def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
@@ -130,7 +130,7 @@ def test_fifty_nodes_with_services_are_discovered(processes, programs):
     process = processes("ours")
     for number in range(50):
         process.graph.create_node(f"node_{number}")
-    other = programs("our_program", "other")
+    other = programs("linkwright_program", "other")
     names = other.ask_until(lambda names: len(names) == 52, "nodes", seconds=20)
     assert "node_49" in names
 

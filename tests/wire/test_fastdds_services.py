@@ -15,7 +15,7 @@ from linkwright.wire.dds.rtps.values import read_parameters, related_identity
 from tests.wire.test_failures import FailsOnce, warnings_of
 
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
-LARGE = "x" * 300_000
+LARGE_TEXT = "x" * 300_000
 CLIENT = SimpleNamespace(
     name="/echo", srv_type=SetCameraInfo, type_name="sensor_msgs/srv/SetCameraInfo", type_hash="", raw=False
 )
@@ -33,7 +33,7 @@ def camera_request(text):
     return request
 
 
-@pytest.mark.parametrize("text", ["hej", LARGE])
+@pytest.mark.parametrize("text", ["hej", LARGE_TEXT])
 def test_client_takes_response_with_its_identity(processes, programs, text):
     process = processes("ours")
     client = process.node.create_client(SetCameraInfo, "/fast_echo")
@@ -47,10 +47,10 @@ def test_client_takes_response_with_its_identity(processes, programs, text):
     process.spin_until(lambda: not client.service_is_ready(), 5.0)  # the lease is 10 s
 
 
-@pytest.mark.parametrize("text", ["hej", LARGE])
+@pytest.mark.parametrize("text", ["hej", LARGE_TEXT])
 def test_service_responds_with_identity_of_request(processes, programs, text):
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     peer = programs("fast_peer")
     process.spin_until(lambda: peer.ask("is_matched"))
     responses = []
@@ -64,8 +64,8 @@ def test_service_responds_with_identity_of_request(processes, programs, text):
 
 def test_no_rtps_participant_is_created_with_cyclone_peers_only(processes):
     a, b = processes("a"), processes("b")
-    a.node.create_service(SetCameraInfo, "/our_echo", echo)
-    client = b.node.create_client(SetCameraInfo, "/our_echo")
+    a.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
+    client = b.node.create_client(SetCameraInfo, "/linkwright_echo")
     assert client.wait_for_service(60)
     assert not [thread.name for thread in threading.enumerate() if thread.name == "linkwright-rtps"]
 
@@ -76,7 +76,7 @@ def test_missing_socket_is_reported_once_and_other_services_work(processes, prog
 
     monkeypatch.setattr("linkwright.wire.dds.rtps.participant.Network", refuse)
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     programs("fast_peer")
     process.spin_until(process.warnings)
     assert process.warnings() == ["Services and clients of nodes on Fast DDS are out of reach: no sockets today"]
@@ -103,7 +103,7 @@ class _Participant:
 
 
 class _Service:
-    name = "/our_echo"
+    name = "/linkwright_echo"
     srv_type = SetCameraInfo
     type_name, type_hash, raw = SetCameraInfo.TYPE_NAME, "", False
     destroyed = False

@@ -22,13 +22,13 @@ pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 
 
-def run(text: str, seconds: float = TIMEOUT_S) -> subprocess.CompletedProcess[str]:
+def run_program(text: str, seconds: float = TIMEOUT_S) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", textwrap.dedent(text)], capture_output=True, text=True, timeout=seconds, check=False
     )
 
 
-def descriptors() -> set[str]:
+def open_descriptors() -> set[str]:
     return {str(path.readlink()) for path in Path("/proc/self/fd").iterdir() if path.is_symlink()}
 
 
@@ -41,7 +41,7 @@ def test_close_leaves_no_threads_or_sockets(processes):
     processes("warm").close()
     threads, sockets = (
         threading.active_count(),
-        {descriptor for descriptor in descriptors() if descriptor.startswith("socket")},
+        {descriptor for descriptor in open_descriptors() if descriptor.startswith("socket")},
     )
     tasks = kernel_threads()
     process = processes("ours")
@@ -49,7 +49,7 @@ def test_close_leaves_no_threads_or_sockets(processes):
     assert kernel_threads() > tasks
     process.close()
     assert threading.active_count() == threads
-    assert {descriptor for descriptor in descriptors() if descriptor.startswith("socket")} == sockets
+    assert {descriptor for descriptor in open_descriptors() if descriptor.startswith("socket")} == sockets
     wait_until(lambda: kernel_threads() <= tasks)  # the kernel lists a joined thread a moment longer
 
 
@@ -90,7 +90,7 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.1, 0.15, 0.2])
 def test_program_that_ends_while_joining_prints_nothing(seconds):
-    result = run(
+    result = run_program(
         f"""
         import asyncio, time
         from linkwright.graph import Graph
@@ -137,7 +137,7 @@ def test_reliable_messages_sent_before_close_arrive(processes):
 
 
 def test_program_without_close_ends(domain):
-    result = run(
+    result = run_program(
         """
         from linkwright.graph import Graph
         from linkwright.wire.dds import join
@@ -152,7 +152,7 @@ def test_program_without_close_ends(domain):
 
 
 def test_failing_program_ends(domain):
-    result = run(
+    result = run_program(
         """
         from linkwright.graph import Graph
         from linkwright.wire.dds import join
@@ -165,7 +165,7 @@ def test_failing_program_ends(domain):
 
 
 def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
-    result = run(
+    result = run_program(
         """
         import os, socket, time
         from linkwright.graph import Graph
@@ -190,7 +190,7 @@ def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
 def test_forked_child_does_not_participate(processes, programs):
     process = processes("ours")
     process.node.create_subscription("std_msgs/msg/Int32", "/flood", print, 10)
-    other = programs("our_program", "forking")
+    other = programs("linkwright_program", "forking")
     other.ask_until(bool, "subscribers", "/flood")
     assert other.ask("fork")[0] == 7
     assert other.ask("nodes") == ["forking", "ours"]

@@ -70,7 +70,7 @@ def test_malformed_socket_table_gives_no_count(tmp_path):
 @on_linux
 def test_other_process_is_counted_by_system_tables(processes, programs, domain):
     assert other_processes(domain) == 0
-    programs("our_program", "one")
+    programs("linkwright_program", "one")
     assert other_processes(domain) == 1
     processes("ours")  # this process has sockets too
     assert other_processes(domain) == 1

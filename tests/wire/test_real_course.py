@@ -39,7 +39,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureR
 
 
 @pytest.fixture
-def run(workspace):
+def start_solution(workspace):
     """Return a function that starts an executable of the workspace in the real ROS 2.
 
     It is killed after the test.
@@ -95,22 +95,22 @@ def interrupt(process: subprocess.Popen[str]) -> str:
     return process.communicate(timeout=TIMEOUT_S)[1]
 
 
-def test_first_move_follows_parameters_and_stops_on_ctrl_c(velocities, run):
+def test_first_move_follows_parameters_and_stops_on_ctrl_c(velocities, start_solution):
     process, commands = velocities
-    program = run("my_control", "first_move", "speed:=0.4", "duration:=60.0")
+    program = start_solution("my_control", "first_move", "speed:=0.4", "duration:=60.0")
     process.spin_until(lambda: (0.4, 0.5) in commands, TIMEOUT_S)
     assert "Traceback" not in interrupt(program)
     process.spin_until(lambda: commands[-1] == (0.0, 0.0), TIMEOUT_S)
 
 
-def test_odometer_accumulates_distance_and_resets(processes, run):
+def test_odometer_accumulates_distance_and_resets(processes, start_solution):
     process = processes("ours")
     distances: list[float] = []
     process.node.create_subscription(Float64, "/distance", lambda message: distances.append(message.data), 10)
     publisher = process.node.create_publisher(Odometry, "/odom", 10)
     trigger = get_service("std_srvs/srv/Trigger")
     client = process.node.create_client(trigger, "/reset_distance")
-    run("my_control", "odometer")
+    start_solution("my_control", "odometer")
     process.spin_until(
         lambda: publisher.get_subscription_count() and process.node.count_publishers("/distance"), TIMEOUT_S
     )
@@ -125,14 +125,14 @@ def test_odometer_accumulates_distance_and_resets(processes, run):
     assert response.result().success
 
 
-def odometry(x):
+def make_odometry(x):
     message = Odometry()
     message.pose.pose.position.x = x
     message.pose.pose.orientation.w = 1.0
     return message
 
 
-def scan(distance):
+def make_scan(distance):
     return LaserScan(
         angle_min=-1.5, angle_max=1.5, angle_increment=0.1, range_min=0.1, range_max=10.0, ranges=[distance] * 31
     )
@@ -141,16 +141,16 @@ def scan(distance):
 @pytest.mark.parametrize(
     ("executable", "topic", "drives", "does_not_drive"),
     [
-        ("drive_meter", "/odom", odometry(0.0), odometry(1.0)),
-        ("drive_square", "/odom", odometry(0.2), None),
-        ("stop_at_wall", "/scan", scan(inf), scan(0.4)),
-        ("wander", "/scan", scan(5.0), scan(0.4)),
+        ("drive_meter", "/odom", make_odometry(0.0), make_odometry(1.0)),
+        ("drive_square", "/odom", make_odometry(0.2), None),
+        ("stop_at_wall", "/scan", make_scan(inf), make_scan(0.4)),
+        ("wander", "/scan", make_scan(5.0), make_scan(0.4)),
     ],
 )
-def test_course_nodes_drive_by_measurements(velocities, run, executable, topic, drives, does_not_drive):
+def test_course_nodes_drive_by_measurements(velocities, start_solution, executable, topic, drives, does_not_drive):
     process, commands = velocities
     publisher = process.node.create_publisher(type(drives), topic, 10)
-    program = run("my_control", executable)
+    program = start_solution("my_control", executable)
     process.spin_until(
         lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), TIMEOUT_S
     )
@@ -165,10 +165,10 @@ def test_course_nodes_drive_by_measurements(velocities, run, executable, topic, 
     assert "Traceback" not in interrupt(program)
 
 
-def test_word_driver_ends_on_ctrl_c(velocities, run):
+def test_word_driver_ends_on_ctrl_c(velocities, start_solution):
     process, commands = velocities
     publisher = process.node.create_publisher(String, "/voice/text", 10)
-    program = run("my_voice", "word_driver")
+    program = start_solution("my_voice", "word_driver")
     process.spin_until(
         lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), TIMEOUT_S
     )
@@ -178,7 +178,7 @@ def test_word_driver_ends_on_ctrl_c(velocities, run):
 
 @pytest.mark.extra("sim")
 @pytest.mark.parametrize("workspace", ["11", "12"], indirect=True)
-def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
+def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, start_solution):
     """The world is ours, and each node of the learner runs under the real rclpy.
 
     In lesson 12, the images are sent with best effort. Kilted's Fast DDS sometimes does not connect two real nodes,
@@ -207,7 +207,7 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
                 ("my_senses", "color_finder", lambda: process.node.count_subscribers("/camera/image_raw")),
                 ("my_mission", "go_to_ball", lambda: states and process.node.count_subscribers("/ball")),
             ):
-                programs.append(run(package, name, "use_sim_time:=true"))
+                programs.append(start_solution(package, name, "use_sim_time:=true"))
                 process.spin_until(is_present, TIMEOUT_S)
             process.spin_until(lambda: places and process.node.count_publishers("/camera/image_raw"), TIMEOUT_S)
 

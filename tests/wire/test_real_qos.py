@@ -134,14 +134,14 @@ def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscr
     publishes.ask("keep_publishing", "/topic", 0.1)
     subscribes.ask_until(lambda texts: len(texts) > 40, "received", "/topic")
     for peer in (publishes, subscribes):
-        assert missed(peer, "/topic") == 0
+        assert count_missed_deadlines(peer, "/topic") == 0
     publishes.ask("stop_publishing", "/topic")
     for peer in (publishes, subscribes):
         peer.ask_until(lambda events: [kind for kind, *_ in events].count("deadline") >= 2, "events", "/topic")
-        assert missed(peer, "/silent") == 0
+        assert count_missed_deadlines(peer, "/silent") == 0
 
 
-def missed(peer, topic):
+def count_missed_deadlines(peer, topic):
     """Return the number of missed deadlines that a side reported."""
     return [kind for kind, *_ in peer.ask("events", topic)].count("deadline")
 

@@ -18,7 +18,7 @@ from tests.domains import own_domain
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 IMAGE_COUNT = 45
 FLOOD_COUNT = 300
 FRAME_COUNT = 40
@@ -190,13 +190,13 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
 
 def test_late_subscriber_gets_latched_message(processes, real_node):
     process = processes("ours")
-    process.node.create_publisher(String, "/lasting_to_ros", LASTING).publish(String(data="said before"))
+    process.node.create_publisher(String, "/lasting_to_ros", TRANSIENT_LOCAL).publish(String(data="said before"))
     real = real_node()
     assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
     late_process = processes("late")
     texts: list[str] = []
     late_process.node.create_subscription(
-        String, "/lasting_from_ros", lambda message: texts.append(message.data), LASTING
+        String, "/lasting_from_ros", lambda message: texts.append(message.data), TRANSIENT_LOCAL
     )
     late_process.spin_until(lambda: texts == ["said before"])
 
@@ -218,7 +218,7 @@ def test_incompatible_qos_is_reported_on_both_sides(processes, real_node):
     process = processes("ours")
     real = real_node()
     process.node.create_publisher(String, "/to_ros", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
-    process.node.create_subscription(String, "/from_ros", print, LASTING)
+    process.node.create_subscription(String, "/from_ros", print, TRANSIENT_LOCAL)
     process.spin_until(lambda: len([text for text in process.warnings() if "incompatible QoS" in text]) == 2)
     assert any("RELIABILITY" in text and "'/real_node'" in text for text in process.warnings())
     assert any("DURABILITY" in text and "'/real_node'" in text for text in process.warnings())
@@ -256,7 +256,7 @@ def test_killed_real_node_is_received_again_after_restart(processes, real_node):
 
 def test_killed_linkwright_node_disappears_and_successor_is_received(processes, programs, real_node):
     real = real_node()
-    ours = programs("our_program", "victim")
+    ours = programs("linkwright_program", "victim")
     real.ask_until(lambda nodes: ["/", "victim"] in nodes, "nodes")
     ours.kill()
     successor = processes("victim")

@@ -36,7 +36,7 @@ def start_real_program(programs):
     return lambda name: programs(name, "theirs", python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
 
 
-def transform(parent, child, x):
+def make_transform(parent, child, x):
     message = TransformStamped(child_frame_id=child)
     message.header.frame_id = parent
     message.transform.translation.x = x
@@ -59,14 +59,14 @@ def test_transform_chain_of_real_node_is_looked_up(processes, start_real_program
 def test_linkwright_transforms_are_received_by_real_node(processes, start_real_program):
     process = processes("ours")
     StaticTransformBroadcaster(process.node).sendTransform(
-        [transform("map", "odom", 1.0), transform("base", "arm", 2.0)]
+        [make_transform("map", "odom", 1.0), make_transform("base", "arm", 2.0)]
     )
     moving_frames = TransformBroadcaster(process.node)
     peer = start_real_program("tf_peer")
     static_frames = peer.ask_until(lambda frames: len(frames) == 2, "received", "/tf_static")
     assert static_frames == {"odom": ["map", 1.0], "arm": ["base", 2.0]}
     process.spin_until(lambda: moving_frames.pub_tf.get_subscription_count() == 1)
-    moving_frames.sendTransform(transform("odom", "base", 0.25))
+    moving_frames.sendTransform(make_transform("odom", "base", 0.25))
     assert peer.ask_until(bool, "received", "/tf") == {"base": ["odom", 0.25]}
     assert all(
         type_hash("tf2_msgs/msg/TFMessage").removeprefix("RIHS01_") in text for text in peer.ask("hashes", "/tf")

@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.messages import interface_names, type_hash
 from linkwright.standins.process import environment
-from tests.wire.values import bytes_of_size, digest
+from tests.wire.values import make_bytes, sha256_of
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 SEED_COUNT = 6
@@ -19,7 +19,7 @@ SEED_COUNT = 6
 LARGE_BYTES, LARGE_MESSAGE_COUNT = 8_000_000, 5
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 """The side of the publisher or client, and the side of the subscription or server."""
-OWN_BUSINESS = "rmw_dds_common/"
+INTERNAL_TYPES = "rmw_dds_common/"
 """Types that only the transport uses; ours are Humble's."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
@@ -38,16 +38,16 @@ def peers(programs, monkeypatch):
     return start
 
 
-def common(kind, peer):
+def find_common_types(kind, peer):
     """Return the types of a kind that the real side has, too."""
-    names = [name for name in interface_names(kind) if not name.startswith(OWN_BUSINESS)]
+    names = [name for name in interface_names(kind) if not name.startswith(INTERNAL_TYPES)]
     return peer.ask("available_types", names)
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 def test_messages_have_same_values_on_both_sides(peers, publisher_side, subscriber_side):
     peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
-    types = common("msg", peers_by_side["theirs"])
+    types = find_common_types("msg", peers_by_side["theirs"])
     assert {"test_msgs/msg/WStrings", "test_msgs/msg/BoundedSequences", "sensor_msgs/msg/PointCloud2"} <= set(types)
     for name in types:
         assert peers_by_side["ours"].ask("fields", name) == peers_by_side["theirs"].ask("fields", name)
@@ -69,7 +69,7 @@ def test_messages_have_same_values_on_both_sides(peers, publisher_side, subscrib
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
 def test_services_have_same_values_on_both_sides(peers, client_side, server_side):
     peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
-    services = common("srv", peers_by_side["theirs"])
+    services = find_common_types("srv", peers_by_side["theirs"])
     assert {"test_msgs/srv/Arrays", "test_msgs/srv/Empty", "nav_msgs/srv/GetPlan"} <= set(services)
     peers_by_side[server_side].ask("serve", services)
     for name in services:
@@ -106,5 +106,5 @@ def test_arrays_of_eight_megabytes_arrive_complete(peers, publisher_side, subscr
         sample for sample in peers_by_side[subscriber_side].ask("received_large") if sample[0] < LARGE_MESSAGE_COUNT
     ]
     assert samples == [
-        [number, LARGE_BYTES, digest(bytes_of_size(number, LARGE_BYTES))] for number in range(LARGE_MESSAGE_COUNT)
+        [number, LARGE_BYTES, sha256_of(make_bytes(number, LARGE_BYTES))] for number in range(LARGE_MESSAGE_COUNT)
     ]

@@ -33,7 +33,7 @@ def test_ros_node_and_endpoints_are_discovered(processes, programs, distribution
     assert endpoints_by_name[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
     assert endpoints_by_name[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
     assert endpoints_by_name[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"
-    assert endpoints_by_name[EndpointKind.CLIENT, "/our_flip"].node == NodeIdentity("real_node", "/")
+    assert endpoints_by_name[EndpointKind.CLIENT, "/linkwright_flip"].node == NodeIdentity("real_node", "/")
     hashes = endpoints_by_name[EndpointKind.PUBLISHER, "/from_ros"].type_hash
     assert hashes == ("" if distribution == "humble" else type_hash(String))
 
@@ -85,9 +85,9 @@ def test_service_answers_ros_client(processes, programs, distribution):
         response.success, response.message = not request.data, "by us"
         return response
 
-    process.node.create_service(SetBool, "/our_flip", flip)
+    process.node.create_service(SetBool, "/linkwright_flip", flip)
     peer = programs("ros_peer", distribution, "real_node", "localhost")
-    process.spin_until(lambda: process.node.count_clients("/our_flip") == 1)
+    process.spin_until(lambda: process.node.count_clients("/linkwright_flip") == 1)
     peer.ask("call", False, 41)
     process.spin_until(lambda: peer.ask("replies") == [[0x0123456789ABCDEF, 41, True, "by us"]])
 

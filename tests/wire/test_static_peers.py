@@ -15,7 +15,7 @@ PRUNE_DELAY_S = 2
 """The seconds after which Cyclone stops asking an address that does not answer; 30 by default."""
 
 
-def configuration(interface: str) -> str:
+def cyclone_configuration(interface: str) -> str:
     """Return a configuration of Cyclone without multicast."""
     return (
         "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast>"
@@ -43,7 +43,7 @@ def hosts() -> Iterator[Hosts]:
 
 def test_late_and_returning_static_peer_is_discovered(hosts):
     def start(host: str, other: str, name: str, **environment: str) -> Program:
-        settings = {"CYCLONEDDS_URI": configuration(f"to{other}"), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+        settings = {"CYCLONEDDS_URI": cyclone_configuration(f"to{other}"), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
         return Program("far_program", name, prefix_words=hosts.within(host), **settings, **environment)
 
     desk = start(DESK, CLOUD, "desk", ROS_STATIC_PEERS=DESKS_CLOUD_ADDRESS)

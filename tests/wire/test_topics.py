@@ -20,8 +20,8 @@ from linkwright.graph.time.values import Duration
 from linkwright.messages import String, get_message, interface_names, serialize
 from tests.wire.conftest import both_wires
 
-LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+TRANSIENT_LOCAL = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 
 
 @both_wires
@@ -59,14 +59,14 @@ def test_messages_are_not_serialized_without_remote_subscribers(processes):
 @both_wires
 def test_late_subscriber_gets_messages_latched_before_join(processes):
     a = processes("a", join_now=False)
-    publisher = a.node.create_publisher(String, "described", LASTING)
+    publisher = a.node.create_publisher(String, "described", TRANSIENT_LOCAL)
     for word in ("one", "two", "three", "four"):
         publisher.publish(String(data=word))
     a.join()
     publisher.publish(String(data="five"))
     b = processes("b")
     texts: list[str] = []
-    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), TRANSIENT_LOCAL)
     b.spin_until(lambda: len(texts) == 3)
     assert texts == ["three", "four", "five"]
     publisher.publish(String(data="six"))
@@ -77,11 +77,13 @@ def test_late_subscriber_gets_messages_latched_before_join(processes):
 @both_wires
 def test_latched_message_of_same_process_is_delivered_once(processes):
     a, b = processes("a"), processes("b")
-    publisher = a.node.create_publisher(String, "described", LASTING)
+    publisher = a.node.create_publisher(String, "described", TRANSIENT_LOCAL)
     publisher.publish(String(data="one"))
     texts: list[str] = []
     for process in (a, b):
-        process.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+        process.node.create_subscription(
+            String, "described", lambda message: texts.append(message.data), TRANSIENT_LOCAL
+        )
     a.spin_until(lambda: len(texts) == 1)
     b.spin_until(lambda: len(texts) == 2)
     publisher.publish(String(data="two"))
@@ -94,8 +96,8 @@ def test_latched_message_of_same_process_is_delivered_once(processes):
 def test_keep_all_messages_arrive_after_publisher_closes(processes):
     a, b = processes("a"), processes("b")
     texts: list[str] = []
-    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), EVERYTHING)
-    publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
+    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), KEEP_ALL)
+    publisher = a.node.create_publisher(String, "chatter", KEEP_ALL)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for number in range(2000):
         publisher.publish(String(data=str(number)))
@@ -185,7 +187,7 @@ def test_qos_of_remote_endpoints_is_available(processes):
         liveliness_lease_duration=Duration(seconds=2),
     )
     a.node.create_publisher(String, "chatter", offered)
-    a.node.create_publisher(String, "all", EVERYTHING)
+    a.node.create_publisher(String, "all", KEEP_ALL)
     b.spin_until(lambda: b.node.count_publishers("chatter") and b.node.count_publishers("all"))
     (endpoint,) = b.node.get_publishers_info_by_topic("/chatter")
     assert endpoint.qos_profile == offered
@@ -228,8 +230,8 @@ def test_malformed_samples_are_dropped_counted_and_reported_once(processes, prog
 def test_messages_of_any_size_arrive(processes, size):
     a, b = processes("a"), processes("b")
     sizes: list[int] = []
-    b.node.create_subscription(String, "chatter", lambda message: sizes.append(len(message.data)), EVERYTHING)
-    publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
+    b.node.create_subscription(String, "chatter", lambda message: sizes.append(len(message.data)), KEEP_ALL)
+    publisher = a.node.create_publisher(String, "chatter", KEEP_ALL)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for _ in range(5):
         publisher.publish(String(data="x" * size))
@@ -263,9 +265,9 @@ def test_reliable_flood_loses_no_messages(processes, programs):
     process = processes("ours")
     numbers: list[int] = []
     process.node.create_subscription(
-        "std_msgs/msg/Int32", "flood", lambda message: numbers.append(message.data), EVERYTHING
+        "std_msgs/msg/Int32", "flood", lambda message: numbers.append(message.data), KEEP_ALL
     )
-    sender = programs("our_program", "sender")
+    sender = programs("linkwright_program", "sender")
     assert sender.ask_until(bool, "subscribers", "/flood")
     count = 20_000
     sender.ask("flood", "/flood", count)

@@ -22,18 +22,18 @@ Fibonacci = get_action("example_interfaces/action/Fibonacci")
 Time = get_message("builtin_interfaces/msg/Time")
 
 
-def sequence(order):
+def fibonacci_sequence(order):
     numbers = [0, 1]
     while len(numbers) <= order:
         numbers.append(numbers[-1] + numbers[-2])
     return numbers[: order + 1]
 
 
-def fibonacci(goal):
+def execute_fibonacci(goal):
     for order in range(1, goal.request.order + 1):
-        goal.publish_feedback(Fibonacci.Feedback(sequence=sequence(order)))
+        goal.publish_feedback(Fibonacci.Feedback(sequence=fibonacci_sequence(order)))
     goal.succeed()
-    return Fibonacci.Result(sequence=sequence(goal.request.order))
+    return Fibonacci.Result(sequence=fibonacci_sequence(goal.request.order))
 
 
 class ActionHarness:
@@ -43,7 +43,7 @@ class ActionHarness:
         self.client = ActionClient(self.client_node, Fibonacci, "fibonacci")
         self.handles = []
 
-    def serve(self, execute=fibonacci, **options):
+    def serve(self, execute=execute_fibonacci, **options):
         self.server = ActionServer(self.server_node, Fibonacci, "fibonacci", execute, **options)
         return self.server
 
@@ -319,7 +319,7 @@ def test_blocking_execute_callback_works_with_multi_threaded_executor():
 
     def work(goal):
         time.sleep(0.05)
-        return fibonacci(goal)
+        return execute_fibonacci(goal)
 
     ActionServer(nodes[0], Fibonacci, "fibonacci", work)
     client = ActionClient(nodes[1], Fibonacci, "fibonacci")

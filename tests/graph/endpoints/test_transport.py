@@ -14,8 +14,8 @@ from linkwright.messages import String, get_service, serialize
 
 Trigger = get_service("std_srvs/srv/Trigger")
 LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-ELSEWHERE = NodeIdentity("elsewhere", "/far")
-OWN = ("/parameter_events", "/rosout")
+REMOTE_NODE = NodeIdentity("elsewhere", "/far")
+OWN_TOPICS = ("/parameter_events", "/rosout")
 
 
 class FakeTransport:
@@ -28,7 +28,7 @@ class FakeTransport:
         self.lose = None
 
     def _known(self, endpoint):
-        return endpoint.name not in OWN and "parameter" not in endpoint.name
+        return endpoint.name not in OWN_TOPICS and "parameter" not in endpoint.name
 
     def open_node(self, node):
         self.open.append(node.name)
@@ -296,9 +296,9 @@ async def test_graph_queries_include_local_and_remote_endpoints(graph, transport
     node.create_publisher(String, "topic", LATCHED)
     node.create_service(Trigger, "trigger", print)
     graph.attach(transport)
-    transport.nodes.append(ELSEWHERE)
+    transport.nodes.append(REMOTE_NODE)
     transport.endpoints.extend(
-        EndpointInfo(kind, ELSEWHERE, name, kind_name, QoSProfile(5), bytes(range(16)), "RIHS01_x")
+        EndpointInfo(kind, REMOTE_NODE, name, kind_name, QoSProfile(5), bytes(range(16)), "RIHS01_x")
         for kind, name, kind_name in (
             (EndpointKind.PUBLISHER, "/topic", "std_msgs/msg/Bool"),
             (EndpointKind.SUBSCRIPTION, "/topic", "std_msgs/msg/String"),
@@ -354,7 +354,7 @@ async def test_wait_for_node_finds_remote_node(graph, transport):
     loop = asyncio.get_running_loop()
     waiting = loop.run_in_executor(None, graph.wait_for_node, "far/elsewhere", 60.0)
     await asyncio.sleep(0.01)
-    transport.nodes.append(ELSEWHERE)
+    transport.nodes.append(REMOTE_NODE)
     transport.tell()
     assert await waiting
     assert not graph.wait_for_node("/far/nobody", 0.01)

@@ -24,7 +24,7 @@ from linkwright.messages import String
 from tests.waiting import TIMEOUT_S, is_waiting, wait_until
 from tests.work import lines_run
 
-BOTH = pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
+both_executors = pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
 
 
 class Context:
@@ -73,7 +73,7 @@ def spin_in_thread(executor):
 
 
 class TestWaiting:
-    @BOTH
+    @both_executors
     def test_timer_is_called(self, kind, node):
         called = threading.Event()
         node.create_timer(0.02, called.set)
@@ -303,14 +303,14 @@ class TestShutdown:
         assert executor.shutdown() is True
         assert threading.active_count() == before
 
-    @BOTH
+    @both_executors
     def test_waiting_for_callbacks_after_shutdown_raises(self, kind):
         executor = kind()
         executor.shutdown()
         with pytest.raises(ShutdownException):
             executor.wait_for_ready_callbacks()
 
-    @BOTH
+    @both_executors
     def test_spin_after_shutdown_returns_immediately(self, kind):
         executor = kind()
         executor.shutdown()
@@ -343,7 +343,7 @@ class TestContext:
 
 
 class TestFutures:
-    @BOTH
+    @both_executors
     def test_spin_until_future_complete_returns_after_result(self, kind):
         future = Future()
         with kind() as executor:
@@ -351,7 +351,7 @@ class TestFutures:
             executor.spin_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert future.result() == "done"
 
-    @BOTH
+    @both_executors
     def test_spin_until_future_complete_times_out(self, kind, node):
         node.create_timer(0.003, lambda: None)
         with kind() as executor:

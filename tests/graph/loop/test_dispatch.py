@@ -273,7 +273,7 @@ def test_callbacks_wait_for_dispatcher():
     for text in "abc":
         publisher.publish(String(data=text))
     wait_until(timer.is_ready)
-    dispatcher = Collecting()
+    dispatcher = CollectingDispatcher()
     node.handle.set_dispatcher(dispatcher)
     dispatcher.run()
     assert received == ["b", "c"]
@@ -288,7 +288,7 @@ def test_callbacks_wait_for_dispatcher():
     graph.close_threadsafe()
 
 
-class Collecting:
+class CollectingDispatcher:
     """A dispatcher that only collects its entities and alarms."""
 
     def __init__(self):
@@ -311,7 +311,7 @@ class Collecting:
 def test_flooded_subscription_is_announced_once():
     graph = Graph(threads=True, on_log=print)
     node = graph.create_node("node")
-    dispatcher = Collecting()
+    dispatcher = CollectingDispatcher()
     node.handle.set_dispatcher(dispatcher)
     node.create_subscription(String, "topic", print, 5)
     publisher = node.create_publisher(String, "topic", 5)
@@ -362,7 +362,7 @@ async def test_close_leaves_no_threads_tasks_or_objects():
     """Also no alarms are left."""
     threads, loop = set(threading.enumerate()), asyncio.get_running_loop()
     graph = Graph(on_log=print)
-    left = _busy_nodes(graph)
+    left = _create_busy_nodes(graph)
     await asyncio.sleep(0.02)
     await graph.close()
     assert set(threading.enumerate()) == threads
@@ -374,7 +374,7 @@ async def test_close_leaves_no_threads_tasks_or_objects():
     assert [node() for node in left] == [None, None, None]
 
 
-def _busy_nodes(graph):
+def _create_busy_nodes(graph):
     nodes = [graph.create_node(f"node_{number}", parameters={"use_sim_time": number == 1}) for number in range(3)]
     publisher = nodes[0].create_publisher(String, "topic", 10)
 

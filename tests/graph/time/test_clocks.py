@@ -191,7 +191,7 @@ class TestClocks:
 
 
 @pytest.fixture
-def simulated(graph):
+def simulated_time(graph):
     """Return a node with simulated time, and a function that sets that time."""
     node = graph.create_node("simulated", parameters={"use_sim_time": True})
     publisher = graph.create_node("simulator").create_publisher(ClockMessage, "/clock", 10)
@@ -199,8 +199,8 @@ def simulated(graph):
 
 
 class TestSimulatedTime:
-    async def test_clock_follows_clock_topic(self, simulated):
-        node, set_time = simulated
+    async def test_clock_follows_clock_topic(self, simulated_time):
+        node, set_time = simulated_time
         assert node.get_clock().ros_time_is_active
         assert node.get_clock().now().nanoseconds == 0
         set_time(12.5)
@@ -219,8 +219,8 @@ class TestSimulatedTime:
         assert publisher.get_subscription_count() == 0
         assert node.get_clock().now_ns() == graph.clock.now_ns()
 
-    async def test_timers_follow_simulated_time(self, graph, simulated, clock):
-        node, set_time = simulated
+    async def test_timers_follow_simulated_time(self, graph, simulated_time, clock):
+        node, set_time = simulated_time
         set_time(100)
         calls = []
         node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND_NS))
@@ -231,8 +231,8 @@ class TestSimulatedTime:
             await graph.settle()
         assert calls == [101.0, 102.1, 105.5, 106.0]
 
-    async def test_time_jump_back_keeps_timers(self, graph, simulated):
-        node, set_time = simulated
+    async def test_time_jump_back_keeps_timers(self, graph, simulated_time):
+        node, set_time = simulated_time
         set_time(100)
         calls = []
         timer = node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND_NS))
@@ -267,8 +267,8 @@ class TestSimulatedTime:
         await clock.advance(0.1)
         assert calls == [1]
 
-    async def test_steady_timers_ignore_simulated_time(self, graph, simulated, clock):
-        node, set_time = simulated
+    async def test_steady_timers_ignore_simulated_time(self, graph, simulated_time, clock):
+        node, set_time = simulated_time
         calls = []
         steady = Clock(clock_type=ClockType.STEADY_TIME, timebase=graph.timebase)
         node.create_timer(1.0, lambda: calls.append(1), clock=steady)
@@ -284,8 +284,8 @@ class TestSimulatedTime:
         assert not result.successful
         assert not node.get_clock().ros_time_is_active
 
-    async def test_rates_follow_simulated_time(self, graph, simulated):
-        node, set_time = simulated
+    async def test_rates_follow_simulated_time(self, graph, simulated_time):
+        node, set_time = simulated_time
         set_time(10)
         rate = node.create_rate(2.0)
         turns = []
@@ -304,8 +304,8 @@ class TestSimulatedTime:
         assert turns == [10.5, 11.2, 11.5]
         await task
 
-    async def test_simulated_time_ends_with_node(self, graph, simulated):
-        node, set_time = simulated
+    async def test_simulated_time_ends_with_node(self, graph, simulated_time):
+        node, set_time = simulated_time
         calls = []
         node.create_timer(1.0, lambda: calls.append(1))
         node.destroy_node()

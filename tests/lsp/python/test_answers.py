@@ -18,7 +18,7 @@ def complete(*answers: tuple[str, Any], character: int = 8) -> Any:
     return combine_responses("textDocument/completion", answers, TEXT, parameters)
 
 
-def edit(start: int, end: int, text: str) -> dict[str, Any]:
+def text_edit(start: int, end: int, text: str) -> dict[str, Any]:
     place = {"start": {"line": 0, "character": start}, "end": {"line": 0, "character": end}}
     return {"label": text, "textEdit": {"range": place, "newText": text}}
 
@@ -34,7 +34,7 @@ def test_first_non_empty_answer_applies(empty: Any) -> None:
 
 
 def test_completions_of_all_servers_are_combined_without_duplicates() -> None:
-    own_result = [edit(5, 8, "package="), edit(5, 8, "parameters=")]
+    own_result = [text_edit(5, 8, "package="), text_edit(5, 8, "parameters=")]
     typed = {"isIncomplete": True, "items": [{"label": "package="}, {"label": "pacing"}]}
     completions = complete((OWN, own_result), (TY, typed))
     assert [item["label"] for item in completions["items"]] == ["package=", "parameters=", "pacing"]
@@ -42,7 +42,7 @@ def test_completions_of_all_servers_are_combined_without_duplicates() -> None:
 
 
 def test_string_completed_by_linkwright_has_no_other_completions() -> None:
-    own_result = {"isIncomplete": False, "items": [edit(11, 14, "turtle_bot")]}
+    own_result = {"isIncomplete": False, "items": [text_edit(11, 14, "turtle_bot")]}
     assert complete((OWN, own_result), (TY, [{"label": "turn"}]), character=13) == own_result
 
 

@@ -118,7 +118,7 @@ def is_shown_message(message: Message) -> bool:
     return message.get("method") == "window/showMessage" and message["params"]["message"] == text
 
 
-def program(name: str, text: str = SERVER) -> Program:
+def server_program(name: str, text: str = SERVER) -> Program:
     names = f"NAME = {name!r}\nPOINT = {{'line': 0, 'character': 0}}\n"
     return Program(name, (sys.executable, "-c", names + text))
 
@@ -137,7 +137,7 @@ def connect(tmp_path: Path) -> Iterator[Callable[..., Connection]]:
 
 
 def test_servers_start_with_first_python_file(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"), program("ruff"))
+    connection = connect(server_program("ty"), server_program("ruff"))
     capabilities = connection.editor.answer(1)["result"]["capabilities"]
     assert capabilities["completionProvider"]["triggerCharacters"] == ["<", "."]
     connection.open("file:///ws/a.xacro", "xml")
@@ -151,14 +151,14 @@ def test_servers_start_with_first_python_file(connect: Callable[..., Connection]
 
 
 def test_early_request_waits_for_servers(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     connection.hover(5)
     assert connection.editor.answer(5)["result"] == {"contents": "ty"}
 
 
 def test_linkwright_answer_is_returned_immediately(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     connection.hover(5, has_own_result={"contents": "own"}, hang=True)
     assert connection.editor.answer(5)["result"] == {"contents": "own"}
@@ -166,14 +166,14 @@ def test_linkwright_answer_is_returned_immediately(connect: Callable[..., Connec
 
 def test_unresponsive_server_is_skipped(connect: Callable[..., Connection], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(router_module, "_RESPONSE_TIMEOUT_S", 0.1)
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     connection.hover(5, hang=True)
     assert connection.editor.answer(5)["result"] is None
 
 
 def test_crashed_server_is_restarted_until_reported_once(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"), program("ruff"))
+    connection = connect(server_program("ty"), server_program("ruff"))
     connection.open()
     assert connection.findings(2) == ["3", "3"]
     for identifier in (5, 6, 7):
@@ -187,7 +187,7 @@ def test_crashed_server_is_restarted_until_reported_once(connect: Callable[..., 
 
 
 def test_program_that_cannot_start_is_reported_and_others_work(connect: Callable[..., Connection]) -> None:
-    connection = connect(Program("ty", ("/no/such/program",)), program("ruff"))
+    connection = connect(Program("ty", ("/no/such/program",)), server_program("ruff"))
     connection.open()
     connection.hover(5)
     assert connection.editor.answer(5)["result"] == {"contents": "ruff"}
@@ -195,14 +195,14 @@ def test_program_that_cannot_start_is_reported_and_others_work(connect: Callable
 
 
 def test_server_requests_are_declined_and_messages_shown(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     shown = connection.editor.until(lambda message: message.get("method") == "window/showMessage")
     assert shown["params"]["message"] == "not supported"
 
 
 def test_closed_file_keeps_linkwright_findings(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     connection.findings(1)
     connection.request(None, "textDocument/didClose", {"textDocument": {"uri": URI}})
@@ -228,7 +228,7 @@ def test_close_during_the_search_removes_the_stubs(
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(WorkspaceStubs, "update", update_slowly)
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     assert started.wait(TIMEOUT_S)
     assert list(tmp_path.glob("linkwright_stubs_*"))

@@ -18,7 +18,7 @@ from linkwright.panels.export.snapshot import snapshot_of
 from linkwright.rviz import RvizConfig
 from tests.browser.golden import link_element, mesh_visual, robot_of
 from tests.browser.mesh_writers import make_png, write_dae, write_glb, write_obj, write_stl_binary
-from tests.panels.export.robots import GRIPPER, snapshot
+from tests.panels.export.robots import GRIPPER, make_snapshot
 from tests.viewer.scene import ARM, open_world
 
 
@@ -32,13 +32,13 @@ def built(tmp_path, monkeypatch):
     monkeypatch.setattr(html, "PAGE_FOLDER", tmp_path / "page")
 
 
-def recorded(text: str) -> dict:
+def read_recording(text: str) -> dict:
     (recording_text,) = re.findall(r'<script type="application/json" id="recorded">(.*?)</script>', text, re.DOTALL)
     return json.loads(recording_text)
 
 
-def page(text: str) -> str:
-    return export_snapshot(snapshot(text), "html").decode()
+def export_page(text: str) -> str:
+    return export_snapshot(make_snapshot(text), "html").decode()
 
 
 def test_same_files_give_the_same_bytes(tmp_path):
@@ -47,14 +47,14 @@ def test_same_files_give_the_same_bytes(tmp_path):
     text = robot_of(
         link_element("a", mesh_visual(tmp_path / "a.stl", "")) + link_element("b", mesh_visual(tmp_path / "b.stl", ""))
     )
-    first = page(text)
+    first = export_page(text)
     os.utime(tmp_path / "a.stl", (1_000_000, 1_000_000))
-    assert page(text) == first
+    assert export_page(text) == first
     assert str(tmp_path) not in first
 
 
 def test_html_contains_all_server_messages():
-    logged = recorded(page(GRIPPER))
+    logged = read_recording(export_page(GRIPPER))
     types = [message["type"] for message in logged["messages"]]
     for message_type in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
         assert message_type in types
@@ -73,7 +73,7 @@ def test_html_contains_all_server_messages():
 
 
 def test_content_security_policy_allows_only_own_script():
-    text = page(GRIPPER)
+    text = export_page(GRIPPER)
     (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', text)
     script = text.rpartition("<script>")[2].partition("</script>")[0]
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
@@ -88,14 +88,14 @@ def test_compressed_export_script_is_supported(tmp_path):
     script = tmp_path / "page" / "export" / "export.js"
     script.with_name("export.js.gz").write_bytes(gzip.compress(b'console.log("packed")'))
     script.unlink()
-    assert '<script>console.log("packed")</script>' in page(GRIPPER)
+    assert '<script>console.log("packed")</script>' in export_page(GRIPPER)
 
 
 def test_robot_names_are_escaped():
     name = "</script><script>alert(1)</script>"
-    text = page(f'<robot name="{name.replace("<", "&lt;")}"><link name="&lt;!--"/></robot>')
+    text = export_page(f'<robot name="{name.replace("<", "&lt;")}"><link name="&lt;!--"/></robot>')
     assert "<script>alert" not in text
-    scene = next(message for message in recorded(text)["messages"] if message["type"] == "robot_scene")
+    scene = next(message for message in read_recording(text)["messages"] if message["type"] == "robot_scene")
     assert (scene["name"], scene["links"][0]["name"]) == (name, "<!--")
 
 
@@ -108,8 +108,8 @@ def test_meshes_and_referenced_files_are_embedded(tmp_path):
     (tmp_path / "d.stl").write_bytes(write_stl_binary())
     (tmp_path / "secret.png").write_bytes(make_png(9, 9, 9))
     names = ("a.dae", "b.obj", "c.glb", "d.stl")
-    logged = recorded(
-        page(robot_of("".join(link_element(name[0], mesh_visual(tmp_path / name, "")) for name in names)))
+    logged = read_recording(
+        export_page(robot_of("".join(link_element(name[0], mesh_visual(tmp_path / name, "")) for name in names)))
     )
     files = {path.rpartition("/")[2]: base64.b64decode(data) for path, data in logged["files"].items()}
     assert set(files) == {*names, "b.mtl", "wood.png"}
@@ -123,13 +123,13 @@ def test_meshes_cannot_embed_files_from_other_folders(tmp_path):
     (folder / "b.obj").write_bytes(write_obj("b.mtl", "paint"))
     (folder / "b.mtl").write_text("newmtl paint\nmap_Kd ../secret.png\nmap_Ks /etc/passwd\n")
     (folder / "link.mtl").symlink_to(tmp_path / "secret.png")
-    logged = recorded(page(robot_of(link_element("b", mesh_visual(folder / "b.obj", "")))))
+    logged = read_recording(export_page(robot_of(link_element("b", mesh_visual(folder / "b.obj", "")))))
     assert {path.rpartition("/")[2] for path in logged["files"]} == {"b.obj", "b.mtl"}
 
 
 def test_html_contains_no_local_paths(tmp_path):
     (tmp_path / "d.stl").write_bytes(write_stl_binary())
-    text = page(robot_of(link_element("d", mesh_visual(tmp_path / "d.stl", ""))))
+    text = export_page(robot_of(link_element("d", mesh_visual(tmp_path / "d.stl", ""))))
     assert str(tmp_path) not in text
     # The secret in the URLs of the program's files is not exported either.
     assert re.search(r"/mesh/[^/~]+/d\.stl", text)
@@ -158,7 +158,7 @@ async def test_html_contains_markers():
         await world.settle()
         world.viewer.manager.fit_to_robot(2.0, 0.0)
         snapshot = snapshot_of(world.viewer, world.viewer.manager)
-    logged = recorded(export_snapshot(snapshot, "html").decode())
+    logged = read_recording(export_snapshot(snapshot, "html").decode())
     assert logged["awaits_size"] is False  # a page has already measured the robot
     assert logged["spacing"] is None
     frames = [base64.b64decode(frame) for frame in logged["frames"]]

@@ -81,43 +81,43 @@ def test_grid_and_axes_scale_with_model_size(size, cell, marker_scale, distance)
     assert reread.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
 
 
-def sized(config, diagonal, ground=0.0):
+def resize_config(config, diagonal, ground=0.0):
     return {(display.name, *path): value for display, path, value in config.take_sizes(diagonal, ground)}
 
 
 def test_grid_and_axes_are_resized_for_mesh_size():
     size = ModelSize(0.5, 0.2)
     sizes = {("Grid", "Cell Size"): 100.0, ("TF", "Marker Scale"): 12.0}
-    assert sized(RvizConfig.for_model("base_link", size=size), 100.0) == sizes
+    assert resize_config(RvizConfig.for_model("base_link", size=size), 100.0) == sizes
     # Without `size`, a model that is one link with a mesh has no size.
-    assert sized(RvizConfig.for_model("base_link"), 100.0) == {**sizes, ("TF", "Marker Scale"): 50.0}
+    assert resize_config(RvizConfig.for_model("base_link"), 100.0) == {**sizes, ("TF", "Marker Scale"): 50.0}
     config = RvizConfig.for_model("base_link", size=size)
-    assert sized(config.copy(), 100.0) == sizes
-    assert sized(config, 100.0) == sizes
-    assert sized(config, 200.0) == {}  # only once, because the user may have changed the view
+    assert resize_config(config.copy(), 100.0) == sizes
+    assert resize_config(config, 100.0) == sizes
+    assert resize_config(config, 200.0) == {}  # only once, because the user may have changed the view
 
 
 @pytest.mark.parametrize("diagonal", [0.0, -1.0, float("nan"), float("inf")])
 def test_model_without_size_resizes_nothing(diagonal):
-    assert sized(RvizConfig.for_model("base_link"), diagonal) == {}
+    assert resize_config(RvizConfig.for_model("base_link"), diagonal) == {}
 
 
 def test_grid_is_at_lowest_point_of_robot():
-    sized_config = sized(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
+    sized_config = resize_config(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
     assert sized_config == {("Grid", "Cell Size"): 1.0, ("TF", "Marker Scale"): 0.5, ("Grid", "Offset", "Z"): -0.1235}
     config = RvizConfig.for_model("base_link")
     config.displays[0].section.put(("Offset", "Z"), "1", nested=True)
-    assert ("Grid", "Offset", "Z") not in sized(config, 1.0, -0.5)
-    assert sized(RvizConfig.for_model("base_link"), 1.0, float("nan")) == {}
-    assert sized(RvizConfig.default(), 1.0, -0.5) == {}
+    assert ("Grid", "Offset", "Z") not in resize_config(config, 1.0, -0.5)
+    assert resize_config(RvizConfig.for_model("base_link"), 1.0, float("nan")) == {}
+    assert resize_config(RvizConfig.default(), 1.0, -0.5) == {}
 
 
 def test_changed_values_are_not_resized():
     config = RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2))
     config.displays[0].section.put(("Cell Size",), "3")
-    assert set(sized(config, 100.0)) == {("TF", "Marker Scale")}
-    assert sized(RvizConfig.default(), 100.0) == {}
-    assert sized(RvizConfig.parse(RvizConfig.for_model("base_link").text()), 100.0) == {}
+    assert set(resize_config(config, 100.0)) == {("TF", "Marker Scale")}
+    assert resize_config(RvizConfig.default(), 100.0) == {}
+    assert resize_config(RvizConfig.parse(RvizConfig.for_model("base_link").text()), 100.0) == {}
 
 
 def test_tf_display_is_disabled_if_frames_would_hide_model():

@@ -12,7 +12,7 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.base.display import ViewerDisplay
-from tests.rviz.clouds.test_clouds import cloud, scan, xyz
+from tests.rviz.clouds.test_clouds import make_cloud, make_scan, xyz_array
 from tests.skipping import skipping
 from tests.viewer.scene import World, open_world
 
@@ -35,12 +35,12 @@ Visualization Manager:
 """
 
 
-def message(cls: str, stamp_ns: int) -> Any:
+def make_message(cls: str, stamp_ns: int) -> Any:
     """Return a driver's message: stamped with the current time, in a moving frame."""
     if cls == "LaserScan":
-        instance = scan([1.0, 2.0, 3.0])
+        instance = make_scan([1.0, 2.0, 3.0])
     elif cls == "PointCloud2":
-        instance = cloud(xyz([(1, 0, 0), (0, 1, 0)]))
+        instance = make_cloud(xyz_array([(1, 0, 0), (0, 1, 0)]))
     else:
         instance = get_message("nav_msgs/msg/Odometry")()
         instance.pose.pose.orientation.w = 1.0
@@ -49,7 +49,7 @@ def message(cls: str, stamp_ns: int) -> Any:
     return instance
 
 
-def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
+def record_levels(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
     """Return the successive levels of each row."""
     facts: dict[str, list[str]] = {}
     set_status = display.set_status
@@ -71,16 +71,16 @@ async def call_periodically(period: float, call: Callable[[], object]) -> None:
         await asyncio.sleep(period)
 
 
-async def drive(world: World, tf_delay: float) -> None:
+async def publish_robot(world: World, tf_delay: float) -> None:
     """Publish a robot's transforms at 20 Hz, later than the messages of its sensors."""
     driver, now_ns = world.graph.create_node("driver"), world.graph.timebase.now_ns
-    publishers = {cls: driver.create_publisher(type(message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
+    publishers = {cls: driver.create_publisher(type(make_message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
     poses = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}
     world.move(poses)
     await world.settle()
 
     def publish_sensor_message(cls: str) -> None:
-        publishers[cls].publish(message(cls, now_ns()))
+        publishers[cls].publish(make_message(cls, now_ns()))
 
     def move_later() -> None:
         asyncio.get_running_loop().call_later(tf_delay, world.move, poses)
@@ -93,8 +93,8 @@ async def drive(world: World, tf_delay: float) -> None:
 @pytest.mark.parametrize("tf_delay", [0.03, 0.2])
 async def test_displays_with_late_transforms_have_ok_status(tf_delay, monkeypatch):
     async with open_world(RvizConfig.parse(FILE)) as world:
-        facts = {cls: levels_of(world.display(cls), monkeypatch) for cls in SENSORS}
-        await drive(world, tf_delay)
+        facts = {cls: record_levels(world.display(cls), monkeypatch) for cls in SENSORS}
+        await publish_robot(world, tf_delay)
         await world.settle()
         for cls, rows in facts.items():
             assert {"Topic", "Transform"} <= rows.keys(), cls

@@ -87,7 +87,7 @@ class StreamRecorder:
 
 
 @asynccontextmanager
-async def running() -> AsyncIterator[StreamRecorder]:
+async def run_stream() -> AsyncIterator[StreamRecorder]:
     world = StreamRecorder()
     try:
         yield world
@@ -96,19 +96,19 @@ async def running() -> AsyncIterator[StreamRecorder]:
         await world.graph.close()
 
 
-def streaming(test):
+def run_with_recorder(test):
     """Run a test with a rig, in time that is skipped."""
 
     @skipping
     async def run():
-        async with running() as recorder:
+        async with run_stream() as recorder:
             await test(recorder)
 
     run.__name__ = test.__name__
     return run
 
 
-@streaming
+@run_with_recorder
 async def test_frame_table_precedes_transforms_and_frame_event(recorder):
     recorder.move(1.0)
     await recorder.settle()
@@ -121,7 +121,7 @@ async def test_frame_table_precedes_transforms_and_frame_event(recorder):
     assert frames.placed == {"tip", "base"}
 
 
-@streaming
+@run_with_recorder
 async def test_change_after_pause_is_sent_at_once(recorder):
     recorder.move(1.0)
     await asyncio.sleep(0.1)
@@ -131,7 +131,7 @@ async def test_change_after_pause_is_sent_at_once(recorder):
     assert recorder.kinds() == ["Transforms"]
 
 
-@streaming
+@run_with_recorder
 async def test_updates_are_limited_to_frame_rate_and_last_change_is_sent(recorder):
     for x in range(500):
         recorder.move(float(x))
@@ -141,7 +141,7 @@ async def test_updates_are_limited_to_frame_rate_and_last_change_is_sent(recorde
     assert recorder.pose("tip")[0] == x
 
 
-@streaming
+@run_with_recorder
 async def test_changes_at_frame_rate_are_sent_without_delay(recorder):
     recorder.move(-2.0)
     await recorder.settle()
@@ -157,7 +157,7 @@ async def test_changes_at_frame_rate_are_sent_without_delay(recorder):
     assert all(at_once[18:])
 
 
-@streaming
+@run_with_recorder
 async def test_fixed_frame_may_be_placed_by_display(recorder):
     recorder.stream.fixed_frame = "world"
     recorder.move(1.0)
@@ -172,7 +172,7 @@ async def test_fixed_frame_may_be_placed_by_display(recorder):
     assert recorder.pose("tip") == [1, 0, 0, 0, 0, 0, 1]
 
 
-@streaming
+@run_with_recorder
 async def test_equal_transforms_are_not_sent_again(recorder):
     recorder.move(1.0)
     await recorder.settle()
@@ -183,7 +183,7 @@ async def test_equal_transforms_are_not_sent_again(recorder):
     assert recorder.kinds() == []
 
 
-@streaming
+@run_with_recorder
 async def test_silent_frames_age(recorder):
     recorder.stream.fade_time = 0.6
     recorder.send({("base", "fix"): IDENTITY}, static=True)
@@ -202,7 +202,7 @@ async def test_silent_frames_age(recorder):
     assert recorder.ages("tip")[-1] < 0.1  # the frame is received again, although it did not move
 
 
-@streaming
+@run_with_recorder
 async def test_ages_are_not_sent_without_fade_time(recorder):
     recorder.stream.fade_time = None
     recorder.move(1.0)
@@ -210,7 +210,7 @@ async def test_ages_are_not_sent_without_fade_time(recorder):
     assert len(recorder.sent()) == 1
 
 
-@streaming
+@run_with_recorder
 async def test_nothing_is_sent_without_pages(recorder):
     recorder.watched = False
     recorder.move(1.0)
@@ -222,7 +222,7 @@ async def test_nothing_is_sent_without_pages(recorder):
     assert recorder.kinds() == ["FrameTable", "Transforms", "FrameView"]
 
 
-@streaming
+@run_with_recorder
 async def test_fixed_frame_change_sends_all_transforms(recorder):
     recorder.move(1.0)
     await recorder.settle()
@@ -235,7 +235,7 @@ async def test_fixed_frame_change_sends_all_transforms(recorder):
     assert frames.fixed_frame == "tip"
 
 
-@streaming
+@run_with_recorder
 async def test_unknown_fixed_frame_gives_nan_poses(recorder):
     recorder.stream.fixed_frame = "map"
     recorder.move(1.0)
@@ -246,7 +246,7 @@ async def test_unknown_fixed_frame_gives_nan_poses(recorder):
     assert frames.problem("tip") == "No transform from [tip] to [map]"
 
 
-@streaming
+@run_with_recorder
 async def test_frame_of_single_link_robot_is_sent_without_tf(recorder):
     recorder.own_frames = frozenset({"base"})
     recorder.stream.on_robot_changed(set())
@@ -261,7 +261,7 @@ async def test_frame_of_single_link_robot_is_sent_without_tf(recorder):
     assert sorted(recorder.said[0].names) == ["base", "tip"]
 
 
-@streaming
+@run_with_recorder
 async def test_frames_of_removed_robot_are_removed(recorder):
     recorder.send({("base", "tip"): IDENTITY, ("base", "old"): IDENTITY})
     await recorder.settle()
@@ -274,7 +274,7 @@ async def test_frames_of_removed_robot_are_removed(recorder):
     assert "old" not in frames.names
 
 
-@streaming
+@run_with_recorder
 async def test_stamp_is_that_of_newest_transform(recorder):
     recorder.move(1.0, stamp_ns=2_500_000_000)
     recorder.send({("base", "b"): IDENTITY}, stamp_ns=1_000_000_000)

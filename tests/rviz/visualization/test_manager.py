@@ -333,7 +333,7 @@ async def test_drag_is_undone_in_one_step():
         await client.until("property_changed", id="display-1/Alpha", value=0.3)
         assert entries(world)[0]["Alpha"] == 0.3
         state = await undo(client)
-        rows = {row["name"]: row for row in (await rows_of(client, world, "display-1"))}
+        rows = {row["name"]: row for row in (await wait_for_rows(client, world, "display-1"))}
         assert rows["Alpha"]["value"] == 0.5
         assert world.viewer.config.text() == TEXT
         assert state["redo"] == {"kind": "set", "name": "Alpha"}
@@ -341,7 +341,7 @@ async def test_drag_is_undone_in_one_step():
         assert entries(world)[0]["Alpha"] == 0.3
 
 
-async def rows_of(client, world, identity: str) -> list[dict]:
+async def wait_for_rows(client, world, identity: str) -> list[dict]:
     messages = [
         message for message in client.messages if isinstance(message, dict) and message["type"] == "display_properties"
     ]

@@ -141,7 +141,7 @@ def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its
     other = processes("other")
     left = other.graph.create_node("left")
     left.create_publisher(Int32, "flood", 10)
-    victim = programs("our_program", "victim")
+    victim = programs("linkwright_program", "victim")
     ours.spin_until(lambda: subscription.get_publisher_count() == 2)
     ours.spin_until(lambda: live_session_count(ours) == 2)  # before that, the way a session ends is unknown
     if its_process_goes_on:

@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.messages import String, get_interface
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES
-from tests.wire.test_topics import EVERYTHING, LASTING
+from tests.wire.test_topics import KEEP_ALL, TRANSIENT_LOCAL
 from tests.wire.zenoh.conftest import ROUTER
 
 AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
@@ -46,10 +46,10 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
     a, b = processes("a"), processes("b")
     chatter_texts: list[str] = []
     described: list[str] = []
-    chatter = a.node.create_publisher(String, "chatter", EVERYTHING)
-    a.node.create_publisher(String, "described", LASTING).publish(String(data="robot"))
-    b.node.create_subscription(String, "chatter", lambda message: chatter_texts.append(message.data), EVERYTHING)
-    b.node.create_subscription(String, "described", lambda message: described.append(message.data), LASTING)
+    chatter = a.node.create_publisher(String, "chatter", KEEP_ALL)
+    a.node.create_publisher(String, "described", TRANSIENT_LOCAL).publish(String(data="robot"))
+    b.node.create_subscription(String, "chatter", lambda message: chatter_texts.append(message.data), KEEP_ALL)
+    b.node.create_subscription(String, "described", lambda message: described.append(message.data), TRANSIENT_LOCAL)
 
     def add(request, response):
         response.sum = request.a + request.b
@@ -85,7 +85,7 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
         late_process = processes(f"late{number}")
         texts: list[str] = []
         late_process.node.create_subscription(
-            String, "described", lambda message, texts=texts: texts.append(message.data), LASTING
+            String, "described", lambda message, texts=texts: texts.append(message.data), TRANSIENT_LOCAL
         )
         late_process.spin_until(lambda texts=texts: texts)
         assert texts == ["robot"]

@@ -17,7 +17,7 @@ from linkwright.wire.zenoh.settings import OVERRIDES
 PYTHON = os.environ.get("LINKWRIGHT_ZENOH_SDK_PYTHON", "")
 CALL_COUNT = 1000
 CLIENT_COUNT = 4
-EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 SetBool = get_service("std_srvs/srv/SetBool")
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON names no interpreter with the SDK")
@@ -49,8 +49,8 @@ def ask_while_spinning(process, question):
 def test_messages_work_in_both_directions(processes, peer):
     process = processes("ours")
     texts = []
-    process.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), EVERYTHING)
-    publisher = process.node.create_publisher(String, "to_sdk", EVERYTHING)
+    process.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), KEEP_ALL)
+    publisher = process.node.create_publisher(String, "to_sdk", KEEP_ALL)
     sdk_peer = peer()
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     sdk_peer.ask_until(bool, "has_subscription")

@@ -26,7 +26,7 @@ from linkwright.wire.zenoh.tokens import Token
 from linkwright.wire.zenoh.topics import OutgoingTopic
 from tests.waiting import TIMEOUT_S, wait_until
 from tests.wire.programs import linkwright
-from tests.wire.test_topics import LASTING
+from tests.wire.test_topics import TRANSIENT_LOCAL
 
 
 def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
@@ -68,7 +68,7 @@ def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
             token = Token(0, str(ours.zid()), "0", number, NodeIdentity("ours", "/"), *names)
             return OutgoingTopic(publisher, token, ours, changed)
 
-        latched, other = announce("/kept", "1", LASTING), announce("/other", "2", QoSProfile(10))
+        latched, other = announce("/kept", "1", TRANSIENT_LOCAL), announce("/other", "2", QoSProfile(10))
         history_key = f"{latched.token.data_key}/@adv/**"
         wait_until(lambda: list(theirs.liveliness().get(history_key)))
         listener = theirs.declare_subscriber(other.token.data_key)
@@ -165,7 +165,7 @@ def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     process = processes("ours")
     lost: list[EndpointInfo] = []
     process.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
-    peer, marker = processes("theirs"), programs("our_program", "marker")
+    peer, marker = processes("theirs"), programs("linkwright_program", "marker")
     publisher = peer.node.create_publisher(String, "/other", 10)
     peer.node.create_publisher(String, "/other", 10)
     process.spin_until(lambda: process.node.count_publishers("/other") == 2)
@@ -179,7 +179,7 @@ def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     marker.kill()
     process.spin_until(lambda: lost)  # reports about publishers that left would have come first
     assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
-    restarted_program = programs("our_program", "marker")
+    restarted_program = programs("linkwright_program", "marker")
     process.spin_until(lambda: process.node.get_node_names().count("marker") == 1)
     restarted_program.ask_until(
         lambda nodes: nodes == ["marker", "ours"], "nodes"
