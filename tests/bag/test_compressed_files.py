@@ -20,7 +20,7 @@ MODES = [CompressionMode.FILE, CompressionMode.MESSAGE]
 PLUGINS = [StoragePlugin.MCAP, StoragePlugin.SQLITE3]
 
 
-def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length: int = 20) -> Path:
+def record_compressed(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length: int = 20) -> Path:
     """Write a folder as `ros2 bag record --compression-mode` does, with messages of ``/a`` and ``/b`` in turn."""
     writer = Writer(folder, version=8, storage_plugin=plugin)
     writer.set_compression(mode, CompressionFormat.ZSTD)
@@ -39,7 +39,7 @@ def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length:
 def test_compressed_file_without_folder_has_same_messages(
     tmp_path: Path, plugin: StoragePlugin, mode: CompressionMode
 ) -> None:
-    folder = recorded(tmp_path / "bag", plugin, mode)
+    folder = record_compressed(tmp_path / "bag", plugin, mode)
     (file,) = (path for path in folder.iterdir() if path.name != "metadata.yaml")
     file_copy = tmp_path / file.name
     shutil.copy(file, file_copy)
@@ -56,7 +56,7 @@ def test_compressed_file_without_folder_has_same_messages(
 
 
 def test_truncated_compressed_mcap_gives_complete_messages(tmp_path: Path) -> None:
-    folder = recorded(tmp_path / "bag", StoragePlugin.MCAP, CompressionMode.FILE, length=20_000)
+    folder = record_compressed(tmp_path / "bag", StoragePlugin.MCAP, CompressionMode.FILE, length=20_000)
     (file,) = folder.glob("*.mcap.zstd")
     cut = tmp_path / "cut.mcap.zstd"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
@@ -70,7 +70,7 @@ def test_damaged_compressed_files_are_reported(tmp_path: Path, capsys: pytest.Ca
     plain.write_text("not compressed")
     with pytest.raises(LinkwrightError, match="it does not begin with a zstd header"):
         BagReader(plain)
-    (file,) = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.FILE, 20_000).glob("*.zstd")
+    (file,) = record_compressed(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.FILE, 20_000).glob("*.zstd")
     cut = tmp_path / "cut.db3.zstd"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     assert main(["bag", "info", str(cut)]) == 1
@@ -78,7 +78,7 @@ def test_damaged_compressed_files_are_reported(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_missing_files_listed_in_metadata_are_named(tmp_path: Path) -> None:
-    folder = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
+    folder = record_compressed(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
     (folder / "bag.db3").unlink()
     with pytest.raises(LinkwrightError, match=r"files that its metadata.yaml lists are missing: bag\.db3$"):
         BagReader(folder)

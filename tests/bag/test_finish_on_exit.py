@@ -28,7 +28,7 @@ def writer(request: pytest.FixtureRequest, tmp_path: Path) -> BagWriter:
     return writer
 
 
-def numbers(path: Path) -> list[int]:
+def message_times(path: Path) -> list[int]:
     """Return the times of a complete recording's messages."""
     with BagReader(path) as bag:
         stamps = [stamp for _, stamp, _ in bag.messages()]
@@ -55,11 +55,11 @@ def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -
     finally:
         over.set()
         thread.join(TIMEOUT_S)
-    numbers_written = numbers(writer.path)
+    numbers_written = message_times(writer.path)
     assert numbers_written == list(range(1, len(numbers_written) + 1))
     assert len(numbers_written) >= 100
     writer.close()
-    assert numbers(writer.path) == numbers_written
+    assert message_times(writer.path) == numbers_written
 
 
 def test_finish_all_leaves_closed_recording_unchanged(writer: BagWriter) -> None:

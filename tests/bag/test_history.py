@@ -38,11 +38,11 @@ def filled_history(max_size: int = 10**6, size: int = 1000, count: int = 10) -> 
     return history, clock
 
 
-def static(child: str) -> bytes:
+def static_transform(child: str) -> bytes:
     return serialize(TFMessage(batch=TransformBatch(("base",), (child,), 0, np.array([[0, 0, 0, 0, 0, 0, 1.0]]))))
 
 
-def numbers(messages: object) -> list[int]:
+def message_numbers(messages: object) -> list[int]:
     return [data[0] for _, _, data in messages]  # type: ignore[attr-defined]  # an iterable of recorded messages
 
 
@@ -52,7 +52,7 @@ def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
     messages = list(history.messages(["/a"], 0))
     assert [stamp // SECOND_NS for _, stamp, _ in messages] == [2996, 2997, 2998, 2999], "the last four messages fit"
     assert history.start_ns == 2996 * SECOND_NS
-    assert numbers(history.state_at(["/a"], 2995 * SECOND_NS)) == [2995 % 256]
+    assert message_numbers(history.state_at(["/a"], 2995 * SECOND_NS)) == [2995 % 256]
     assert history.state_at(["/a"], 2994 * SECOND_NS) == []
     history.add("/a", bytes(10**5))
     assert history.count == 3000, "a message larger than the limit is not stored"
@@ -61,7 +61,7 @@ def test_history_drops_oldest_messages_beyond_byte_limit() -> None:
 def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
     history, clock = filled_history(max_size=10**5)
     for child in ("one", "two", "one"):
-        history.add("/tf_static", static(child))
+        history.add("/tf_static", static_transform(child))
     history.add("/map", b"\7")
     for second in range(10, 200):
         clock.ns = second * SECOND_NS
@@ -77,18 +77,18 @@ def test_state_at_returns_last_messages_and_dropped_static_transforms() -> None:
 def test_message_stream_continues_after_end_when_messages_arrive() -> None:
     history, clock = filled_history(count=3)
     stream = history.messages(["/a", "/b"], SECOND_NS)
-    assert numbers([next(stream), next(stream)]) == [1, 2]
+    assert message_numbers([next(stream), next(stream)]) == [1, 2]
     assert next(stream, None) is None
     clock.ns = 3 * SECOND_NS
     history.add("/b", b"\10")
     history.add("/a", b"\11")
     clock.ns = 2 * SECOND_NS  # the clock is set back, but recorded times do not decrease
     history.add("/a", b"\12")
-    assert numbers(stream) == [8, 9, 10]
+    assert message_numbers(stream) == [8, 9, 10]
     assert history.end_ns == 3 * SECOND_NS
 
 
-def image(shade: int, size: int = 200_000) -> bytes:
+def make_image(shade: int, size: int = 200_000) -> bytes:
     return bytes([shade]) * size
 
 
@@ -102,14 +102,19 @@ def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
     history = History(10**6, clock)
     for second in range(100):  # 20 MB without compression
         clock.ns = second * SECOND_NS
-        history.add("/camera", image(second))
+        history.add("/camera", make_image(second))
         wait_until_packed(history, (second + 1) * 1000)
     assert history.start_ns == 0
-    assert history.state_at(["/camera"], 50 * SECOND_NS) == [("/camera", 50 * SECOND_NS, image(50))]
-    assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND_NS)] == [image(98), image(99)]
+    assert history.state_at(["/camera"], 50 * SECOND_NS) == [("/camera", 50 * SECOND_NS, make_image(50))]
+    assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND_NS)] == [make_image(98), make_image(99)]
     part = history.messages_between(97 * SECOND_NS, 99 * SECOND_NS)
     assert sum(len(data) for _, _, data in part) < 204_000, "all but the state before them are compressed"
-    assert [uncompressed_bytes(data) for _, _, data in part] == [image(96), image(97), image(98), image(99)]
+    assert [uncompressed_bytes(data) for _, _, data in part] == [
+        make_image(96),
+        make_image(97),
+        make_image(98),
+        make_image(99),
+    ]
     history.close()
 
 
@@ -117,10 +122,10 @@ def test_incompressible_messages_are_stored_uncompressed() -> None:
     noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
     history, _ = filled_history(count=0, max_size=10**7)
     history.add("/camera", noise)
-    history.add("/camera", image(1))
+    history.add("/camera", make_image(1))
     wait_until_packed(history, 202_000)
     assert history.size > 200_000
-    assert history.state_at(["/camera"], 0) == [("/camera", 0, image(1))]
+    assert history.state_at(["/camera"], 0) == [("/camera", 0, make_image(1))]
     assert next(history.messages(["/camera"], 0)) == ("/camera", 0, noise)
     history.close()
 
@@ -136,7 +141,7 @@ def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.Mo
     monkeypatch.setattr(_zstd(), "compress", slow)
     history, _ = filled_history(count=0, max_size=500_000)
     for shade in range(5):
-        history.add("/camera", image(shade))
+        history.add("/camera", make_image(shade))
     assert history.size == 2 * 200_200, "two images: one is being compressed, and the newest one"
     proceed.set()
     wait_until_packed(history, 210_000)
@@ -144,8 +149,8 @@ def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.Mo
     history.close()
 
 
-def states(clock: Clock, history: History, positions: list[float], *, start: float = 0.0) -> None:
-    """Joint states, a hundred in a second."""
+def add_states(clock: Clock, history: History, positions: list[float], *, start: float = 0.0) -> None:
+    """Add joint states to the history, a hundred in a second."""
     for number, position in enumerate(positions):
         clock.ns = int((start + number / 100) * SECOND_NS)
         state = JointState(name=["arm"], position=[position])
@@ -154,7 +159,7 @@ def states(clock: Clock, history: History, positions: list[float], *, start: flo
         history.add("/joint_states", data, content=content_of(JointState.TYPE_NAME, data))
 
 
-def positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
+def joint_positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
     """Position and stamp, in seconds, of joint states."""
     joint_states = [deserialize(uncompressed_bytes(data), JointState) for _, _, data in messages]
     return [
@@ -166,14 +171,14 @@ def positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float
 def test_unmoving_joint_states_keep_two_messages_per_ten_seconds() -> None:
     clock = Clock()
     history = History(10**8, clock)
-    states(clock, history, [1.5] * 6000)
+    add_states(clock, history, [1.5] * 6000)
     assert history.count == 12
     size = history.size
-    states(clock, history, [1.5] * 900, start=60.0)
+    add_states(clock, history, [1.5] * 900, start=60.0)
     assert history.size == size + 2 * (size // 12)
     # The position is the same at any time in between, and its stamp is not before that time.
     for second in (0.5, 7.0, 29.99, 65.0):
-        ((position, stamp),) = positions(history.state_at(["/joint_states"], int(second * SECOND_NS)))
+        ((position, stamp),) = joint_positions(history.state_at(["/joint_states"], int(second * SECOND_NS)))
         assert position == 1.5
         assert stamp >= second
 
@@ -182,13 +187,13 @@ def test_moving_joint_states_are_all_kept() -> None:
     clock = Clock()
     history = History(10**8, clock)
     resting, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
-    states(clock, history, [*resting, *moves, *resting])
+    add_states(clock, history, [*resting, *moves, *resting])
     assert history.count == 2 + 300 + 2
-    assert positions(history.state_at(["/joint_states"], int(2.5 * SECOND_NS)))[0][0] == 0.0
-    assert positions(history.state_at(["/joint_states"], int(4.5 * SECOND_NS)))[0] == pytest.approx((1.51, 4.5))
-    assert positions(history.state_at(["/joint_states"], int(8.5 * SECOND_NS)))[0][0] == 0.0
+    assert joint_positions(history.state_at(["/joint_states"], int(2.5 * SECOND_NS)))[0][0] == 0.0
+    assert joint_positions(history.state_at(["/joint_states"], int(4.5 * SECOND_NS)))[0] == pytest.approx((1.51, 4.5))
+    assert joint_positions(history.state_at(["/joint_states"], int(8.5 * SECOND_NS)))[0][0] == 0.0
     back_and_forth = History(10**8, clock)
-    states(clock, back_and_forth, [0.0, 1.0] * 100, start=20.0)
+    add_states(clock, back_and_forth, [0.0, 1.0] * 100, start=20.0)
     assert back_and_forth.count == 200
 
 
@@ -196,11 +201,11 @@ def test_messages_between_spans_requested_interval_of_unmoving_robot() -> None:
     clock = Clock()
     history = History(10**8, clock)
     resting, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
-    states(clock, history, [*resting, *moves, *resting])
+    add_states(clock, history, [*resting, *moves, *resting])
     for start, end, last in ((1.0, 2.5, 0.0), (2.0, 4.5, 1.51), (4.5, 8.9, 0.0)):
         part = history.messages_between(int(start * SECOND_NS), int(end * SECOND_NS))
         assert (part[0][1], part[-1][1]) == (int(start * SECOND_NS), int(end * SECOND_NS))
-        assert positions(part)[-1][0] == pytest.approx(last)
+        assert joint_positions(part)[-1][0] == pytest.approx(last)
 
 
 def test_transforms_of_unmoving_publishers_are_thinned_separately() -> None:
@@ -219,8 +224,8 @@ def test_transforms_of_unmoving_publishers_are_thinned_separately() -> None:
         assert newest == {"wheel": 0.0, "robot": second}
 
 
-def transforms(history: History, clock: Clock, x: float) -> None:
-    """Return a transform at the current time."""
+def add_transforms(history: History, clock: Clock, x: float) -> None:
+    """Add a transform at the current time to the history."""
     data = serialize(
         TFMessage(batch=TransformBatch(("base",), ("robot",), clock.ns, np.array([[x, 0, 0, 0, 0, 0, 1.0]])))
     )
@@ -228,7 +233,7 @@ def transforms(history: History, clock: Clock, x: float) -> None:
 
 
 def publish_clock(history: History, clock: Clock, simulated_ns: int) -> None:
-    """Return a message of a simulated clock at the current time."""
+    """Add a message of a simulated clock at the current time to the history."""
     time = SimulatedTime()
     time.clock.sec, time.clock.nanosec = divmod(simulated_ns, SECOND_NS)
     data = serialize(time)
@@ -247,7 +252,7 @@ def test_transforms_with_rounding_noise_count_as_unmoving() -> None:
     history = History(10**8, clock)
     for number in range(6000):
         clock.ns = number * SECOND_NS // 100
-        transforms(history, clock, 0.1 + 1e-12 * (number % 3))
+        add_transforms(history, clock, 0.1 + 1e-12 * (number % 3))
     assert history.count == 12
 
 
@@ -256,7 +261,7 @@ def test_slowly_moving_transforms_are_kept_within_nanometer() -> None:
     history = History(10**8, clock)
     for number in range(3000):
         clock.ns = number * SECOND_NS // 100
-        transforms(history, clock, number * 1e-10)
+        add_transforms(history, clock, number * 1e-10)
     for second in (0.5, 7.0, 12.34, 29.98):
         batches = [
             deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], int(second * SECOND_NS))
@@ -280,7 +285,7 @@ def test_clock_is_kept_completely_while_robot_moves() -> None:
     history = History(10**8, clock)
     for number in range(500):
         clock.ns = number * SECOND_NS // 100
-        transforms(history, clock, number / 100)
+        add_transforms(history, clock, number / 100)
         publish_clock(history, clock, clock.ns)
     assert history.count == 1000
 
@@ -304,7 +309,7 @@ def test_messages_between_thinned_clock_ticks_keep_simulated_times() -> None:
         clock.ns = number * SECOND_NS // 100
         publish_clock(history, clock, SECOND_NS + clock.ns)
         if number in (333, 667):
-            transforms(history, clock, number)
+            add_transforms(history, clock, number)
     stamps = [stamp for name, stamp, _ in to_simulated_time(history.messages_between(0, clock.ns)) if name == "/tf"]
     assert stamps[:2] == [int(4.33 * SECOND_NS), int(7.67 * SECOND_NS)]
 

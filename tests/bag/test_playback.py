@@ -20,11 +20,11 @@ SECOND_NS = 1_000_000_000
 STRING, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
 
 
-def text(data: str) -> bytes:
+def string_text(data: str) -> bytes:
     return serialize(String(data=data))
 
 
-def transform(child: str) -> bytes:
+def make_transform(child: str) -> bytes:
     message = get_message(TF)()
     stamped_transform = get_message("geometry_msgs/msg/TransformStamped")()
     stamped_transform.child_frame_id = child
@@ -32,7 +32,7 @@ def transform(child: str) -> bytes:
     return serialize(message)
 
 
-def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
+def write_recording(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
     """Record 20 s: ``/a`` each second, ``/b`` each fourth, ``/tf`` twice a second, ``/tf_static`` at 0 and 9 s."""
     path = folder / "bag"
     with BagWriter(path, storage, compression="storage" if compressed else "none") as writer:
@@ -44,22 +44,22 @@ def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, c
             ("/tf_static", TF, DEFAULT_QOS),
         ):
             writer.add_topic(name, kind, [qos])
-        writer.write("/robot_description", START_NS, text("<robot/>"))
+        writer.write("/robot_description", START_NS, string_text("<robot/>"))
         for half in range(40):
             stamp = START_NS + half * SECOND_NS // 2
             if half in (0, 18):
-                writer.write("/tf_static", stamp, transform(f"static {half}"))
-            writer.write("/tf", stamp, transform(f"moving {half}"))
+                writer.write("/tf_static", stamp, make_transform(f"static {half}"))
+            writer.write("/tf", stamp, make_transform(f"moving {half}"))
             if half % 2 == 0:
-                writer.write("/a", stamp, text(f"a {half // 2}"))
+                writer.write("/a", stamp, string_text(f"a {half // 2}"))
             if half % 8 == 0:
-                writer.write("/b", stamp, text(f"b {half // 2}"))
+                writer.write("/b", stamp, string_text(f"b {half // 2}"))
             if half % chunk == 0:
                 writer.flush()
     return path
 
 
-def words(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
+def message_words(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
     return [
         deserialize(data, String).data
         if topic in ("/a", "/b", "/robot_description")
@@ -75,19 +75,23 @@ TOPICS = ("/a", "/b", "/robot_description", "/tf", "/tf_static")
 def test_state_at_returns_last_message_of_each_topic_and_transforms(
     tmp_path: Path, storage: str, compressed: bool
 ) -> None:
-    with BagReader(recorded(tmp_path, storage, compressed=compressed)) as bag:
+    with BagReader(write_recording(tmp_path, storage, compressed=compressed)) as bag:
         time_ns = START_NS + 7 * SECOND_NS + 1
-        assert words(bag.state_at(TOPICS, time_ns)) == [
+        assert message_words(bag.state_at(TOPICS, time_ns)) == [
             "static 0", "<robot/>", "b 4", "moving 11", "moving 12", "moving 13", "moving 14", "a 7",
         ]  # fmt: skip
-        assert words(bag.state_at(["/tf_static", "/a"], START_NS + 12 * SECOND_NS)) == ["static 0", "static 18", "a 12"]
+        assert message_words(bag.state_at(["/tf_static", "/a"], START_NS + 12 * SECOND_NS)) == [
+            "static 0",
+            "static 18",
+            "a 12",
+        ]
         assert bag.state_at(["/a"], START_NS - 1) == []
         assert bag.time_before(["/a", "/b"], START_NS + 5 * SECOND_NS) == START_NS + 4 * SECOND_NS
         assert bag.time_before(["/a"], START_NS) is None
 
 
 def without_index(data: bytes, *, message_indexes: bool) -> bytes:
-    """Write a finished MCAP file without a summary, and without chunk indexes on request."""
+    """Return a finished MCAP file without its summary, and without message indexes on request."""
     records, place = bytearray(data[:8]), 8
     while True:
         kind, length = struct.unpack_from("<BQ", data, place)
@@ -103,7 +107,7 @@ def without_index(data: bytes, *, message_indexes: bool) -> bytes:
 @pytest.mark.parametrize("compressed", [False, True])
 @pytest.mark.parametrize("way", ["cut off", "without a summary", "without any index"])
 def test_bag_reader_indexes_mcap_without_index(tmp_path: Path, way: str, compressed: bool) -> None:
-    folder = recorded(tmp_path, chunk=3, compressed=compressed)
+    folder = write_recording(tmp_path, chunk=3, compressed=compressed)
     (file,) = folder.glob("*.mcap")
     with BagReader(file) as bag:
         messages = list(bag.messages())
@@ -124,7 +128,7 @@ def test_bag_reader_indexes_mcap_without_index(tmp_path: Path, way: str, compres
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_message_counts_per_interval_are_returned(tmp_path: Path, storage: str) -> None:
-    with BagReader(recorded(tmp_path, storage, chunk=1)) as bag:
+    with BagReader(write_recording(tmp_path, storage, chunk=1)) as bag:
         counts = bag.counts(2)
     assert counts["/a"] == [10, 10]
     assert counts["/robot_description"] == [1, 0]
@@ -140,7 +144,9 @@ def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> 
             writer.add_topic(name, TF if "tf" in name else STRING, [DEFAULT_QOS])
         for number, stamp in enumerate(stamps):
             for topic in topics[: 1 + number % 4]:
-                writer.write(topic, START_NS + stamp, transform(f"{number}") if "tf" in topic else text(f"{number}"))
+                writer.write(
+                    topic, START_NS + stamp, make_transform(f"{number}") if "tf" in topic else string_text(f"{number}")
+                )
     with BagReader(tmp_path / "bag") as bag:
         messages = list(bag.messages())
         for time_ns in sorted({START_NS + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
@@ -197,7 +203,7 @@ class PlayedRecording:
 
 @pytest.fixture
 async def recording(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[PlayedRecording]:
-    recording = PlayedRecording(recorded(tmp_path, getattr(request, "param", "mcap")))
+    recording = PlayedRecording(write_recording(tmp_path, getattr(request, "param", "mcap")))
     yield recording
     recording.playback.close()
     recording.bag.close()
@@ -294,7 +300,7 @@ def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: 
     with BagWriter(tmp_path / "bag", storage) as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
         for stamp in (0, 59, 60, 180):
-            writer.write("/tf", START_NS + stamp * SECOND_NS, transform(f"{stamp}"))
+            writer.write("/tf", START_NS + stamp * SECOND_NS, make_transform(f"{stamp}"))
     with BagReader(tmp_path / "bag") as bag:
         for time_ns, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
             assert [message[1] for message in bag.state_at(["/tf"], START_NS + time_ns * SECOND_NS)] == [
@@ -331,7 +337,7 @@ async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Pat
     with BagWriter(path) as writer:
         writer.add_topic("/a", STRING, [DEFAULT_QOS])
         for number in range(5000):
-            writer.write("/a", START_NS + number * 1000, text(str(number)))
+            writer.write("/a", START_NS + number * 1000, string_text(str(number)))
     recording = PlayedRecording(path)
     recording.listen("/a")
     await recording.take_heard()
@@ -346,7 +352,7 @@ async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Pat
 
 
 async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> None:
-    path = recorded(tmp_path, compressed=True)
+    path = write_recording(tmp_path, compressed=True)
     (file,) = path.glob("*.mcap")
     magic = b"\x28\xb5\x2f\xfd"  # starts each zstd frame
     first, rest = file.read_bytes().split(magic, 1)

@@ -10,7 +10,7 @@ import pytest
 
 from tests.browser.conftest import TIMEOUT_S, until
 from tests.browser.live import configuration
-from tests.page.test_slow_lines import cloud, image
+from tests.page.test_slow_lines import make_cloud, make_image
 from tests.viewer.throttle import slow_line
 from tests.waiting import wait_until
 
@@ -36,7 +36,7 @@ SENSES = configuration(
 
 def make_noise_image(width: int, height: int) -> Any:
     """Return an image of squares of random colors: hard to compress, also at the size of its panel."""
-    message = image(width, height)
+    message = make_image(width, height)
     squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE_PX, width // _SQUARE_PX, 3), np.uint8)
     message.data = squares.repeat(_SQUARE_PX, axis=0).repeat(_SQUARE_PX, axis=1).tobytes()
     return message
@@ -77,7 +77,7 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     page = open_page(SlowAddress(viewer.run(line.__aenter__)), wait=False)
     until(page, "lw.displays.length === 2")
 
-    heavy_messages = cloud(50_000), make_noise_image(1280, 720)
+    heavy_messages = make_cloud(50_000), make_noise_image(1280, 720)
     facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:
@@ -109,7 +109,7 @@ def test_fast_connection_shows_no_notice(live, open_page):
     viewer = live(SENSES)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.length === 2")
-    heavy_messages = cloud(100_000)
+    heavy_messages = make_cloud(100_000)
     for _ in range(20):
         viewer.publish("/cloud", heavy_messages)
     until(page, "lw.displays[0].drawn?.points === 100000")
@@ -141,7 +141,7 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     page.on("websocket", lambda socket: urls.append(socket.url))
     page.goto(viewer.url)
     until(page, "lw.displays.length === 2")
-    viewer.publish("/image", image(64, 64))
+    viewer.publish("/image", make_image(64, 64))
     # Panels that are created when they are opened may request more files.
     for name in ("File", "Panels", "Share"):
         page.get_by_role("button", name=name, exact=True).click()

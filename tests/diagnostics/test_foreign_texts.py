@@ -48,7 +48,7 @@ XML_MISTAKES = {
 }
 
 
-def chinese(text: str) -> str:
+def translate(text: str) -> str:
     """Return the translation without the quoted parts."""
     return re.sub("“[^”]*”", "", translate_phrase(foreign(text), "zh"))
 
@@ -63,9 +63,9 @@ def test_yaml_errors_are_translated(text: str, loader: type) -> None:
         getattr(error, "problem", None) or getattr(error, "reason", None),
         getattr(error, "context", None),
     ):
-        assert foreign_text is None or not re.search("[a-z]", chinese(foreign_text)), (
+        assert foreign_text is None or not re.search("[a-z]", translate(foreign_text)), (
             foreign_text,
-            chinese(foreign_text),
+            translate(foreign_text),
         )
 
 
@@ -75,7 +75,7 @@ def test_xml_errors_are_translated(text: str) -> None:
     with pytest.raises(expat.ExpatError) as raised:
         parser.Parse(text, True)
     foreign_text = expat.ErrorString(raised.value.code)
-    assert not re.search("[a-z]", chinese(foreign_text).replace("xml", "")), (foreign_text, chinese(foreign_text))
+    assert not re.search("[a-z]", translate(foreign_text).replace("xml", "")), (foreign_text, translate(foreign_text))
 
 
 def test_quoted_parts_are_kept_and_unknown_texts_are_unchanged() -> None:

@@ -47,7 +47,7 @@ def named_paths(page: Path) -> Iterator[str]:
 
 
 @functools.cache
-def tree() -> list[Path]:
+def tracked_paths() -> list[Path]:
     """Return all tracked files and folders of the repository."""
     paths = [
         path
@@ -65,7 +65,7 @@ def other_names() -> str:
     return "".join((REPOSITORY / name).read_text(encoding="utf-8") for name in names)
 
 
-def exists(word: str) -> bool:
+def path_or_module_exists(word: str) -> bool:
     """Return whether a module exists, or a path that ends with this text.
 
     The text before it may give the folder.
@@ -75,14 +75,14 @@ def exists(word: str) -> bool:
     if _MODULE.fullmatch(word):
         folder = REPOSITORY / "src" / Path(*word.split("."))
         return any(path.exists() for path in (folder, folder.with_suffix(".py"), folder.parent.with_suffix(".py")))
-    return any(path.match(word.rstrip("/")) for path in tree())
+    return any(path.match(word.rstrip("/")) for path in tracked_paths())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
 def test_named_files_and_modules_exist(page: Path) -> None:
     words = list(named_paths(page))
     assert words
-    assert [word for word in words if not exists(word)] == []
+    assert [word for word in words if not path_or_module_exists(word)] == []
 
 
 @pytest.mark.parametrize("page", [DOCS / "architecture.md"], ids=lambda page: page.name)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.docs.pages import blocks
+from tests.docs.pages import read_blocks
 from tests.repository_tools import load_tool
 
 TOOL = load_tool("documented_output")
@@ -22,7 +22,7 @@ def test_shown_output_is_current(page: Path) -> None:
 
 
 def test_both_languages_show_same_cases() -> None:
-    english, chinese = map(blocks, TOOL.PAGES)
+    english, chinese = map(read_blocks, TOOL.PAGES)
     assert [block.language for block in english].count("text") >= 6
     for english_block, chinese_block in zip(english, chinese, strict=True):
         if english_block.language == "text":

@@ -38,7 +38,7 @@ def collada_with_library(parts: str) -> str:
     return COLLADA.replace(NODE, f"<node>{KEPT}{KEPT}</node>").replace("<library_visual_scenes>", library)
 
 
-def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
+def triangle_corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
     """Return the sorted corners of all triangles in meters, each from its lowest corner; shape (n, 9)."""
     vertices_by_mesh = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
@@ -88,7 +88,9 @@ def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
 )
 def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
     data = text.encode()
-    assert np.allclose(corners(data, "dae", is_plain=True), corners(data, "dae", is_plain=False), atol=2e-5)
+    assert np.allclose(
+        triangle_corners(data, "dae", is_plain=True), triangle_corners(data, "dae", is_plain=False), atol=2e-5
+    )
     (tmp_path / "mesh.dae").write_bytes(data)
     plain_mesh, mesh = read_small(data, "dae"), read_mesh(tmp_path / "mesh.dae")
     assert plain_mesh is not None
@@ -180,7 +182,7 @@ OBJ = "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nvn 0 0 1\nvt 0 0
 )
 def test_obj_triangles_match_trimesh(text: str) -> None:
     data = text.encode()
-    assert np.allclose(corners(data, "obj", is_plain=True), corners(data, "obj", is_plain=False))
+    assert np.allclose(triangle_corners(data, "obj", is_plain=True), triangle_corners(data, "obj", is_plain=False))
 
 
 @pytest.mark.parametrize(
@@ -217,4 +219,4 @@ def test_unusual_obj_is_left_to_trimesh(text: str) -> None:
 def test_stl_colors_do_not_change_triangles(header: bytes) -> None:
     facet = np.array([0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0], dtype="<f4").tobytes() + b"\xff\x83"
     data = header.ljust(80) + (1).to_bytes(4, "little") + facet
-    assert np.array_equal(corners(data, "stl", is_plain=True), corners(data, "stl", is_plain=False))
+    assert np.array_equal(triangle_corners(data, "stl", is_plain=True), triangle_corners(data, "stl", is_plain=False))

@@ -11,17 +11,17 @@ from linkwright.geometry.stl import read_stl
 pytestmark = pytest.mark.extra("mesh")
 
 
-def _bytes(kind: str = "stl") -> bytes:
+def _stl_bytes(kind: str = "stl") -> bytes:
     data = trimesh.creation.icosphere(subdivisions=2, radius=0.3).export(file_type=kind)
     return data if isinstance(data, bytes) else data.encode()
 
 
-TEXT = _bytes("stl_ascii")
+TEXT = _stl_bytes("stl_ascii")
 
 
 @pytest.mark.parametrize(
     "data",
-    [_bytes(), TEXT, TEXT.replace(b"\n", b"\r\n"), b"solid a ball\n" + TEXT.partition(b"\n")[2]],
+    [_stl_bytes(), TEXT, TEXT.replace(b"\n", b"\r\n"), b"solid a ball\n" + TEXT.partition(b"\n")[2]],
     ids=["binary", "text", "text of Windows", "text with a name"],
 )
 def test_stl_triangles_match_trimesh(data):
@@ -36,10 +36,10 @@ def test_stl_triangles_match_trimesh(data):
 @pytest.mark.parametrize(
     "data",
     [
-        _bytes()[:-1],
-        _bytes() + b"x",
-        b"COLOR=" + _bytes()[6:],
-        _bytes()[:-2] + b"\1\0",
+        _stl_bytes()[:-1],
+        _stl_bytes() + b"x",
+        b"COLOR=" + _stl_bytes()[6:],
+        _stl_bytes()[:-2] + b"\1\0",
         bytes(84),
         TEXT + TEXT,
         TEXT.replace(b"endloop", b"endlop", 1),

@@ -15,7 +15,7 @@ from linkwright.geometry.arrays import matrix_from_pose, quaternion_from_rpy
 from linkwright.kinematics import KinematicTree, UnknownNameError
 from linkwright.urdf import Robot, parent_joints
 from tests.geometry.rotations import quaternion_about
-from tests.urdf.robots import chain, robot_text, robots
+from tests.urdf.robots import chain_of_links, robot_text, robots
 
 
 def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
@@ -69,7 +69,7 @@ def test_frames_are_product_of_parent_joint_transforms(robot, seed):
 
 ARM = load(
     robot_text(
-        chain(
+        chain_of_links(
             'revolute:<origin xyz="0 0 1"/><axis xyz="0 0 1"/>',
             'prismatic:<origin xyz="1 0 0"/><axis xyz="0 2 0"/>',
             'fixed:<origin xyz="0 0 0.5" rpy="0 0 1"/>',
@@ -138,7 +138,7 @@ class TestArm:
 
 class TestMimic:
     CHAIN = robot_text(
-        chain(
+        chain_of_links(
             "continuous",
             'continuous:<mimic joint="j0" multiplier="2" offset="0.5"/>',
             'prismatic:<mimic joint="j1" multiplier="-1" offset="0.1"/>',
@@ -160,17 +160,17 @@ class TestMimic:
 
     @pytest.mark.parametrize("joint", ["j0", "nowhere"])
     def test_mimic_joint_without_valid_source_moves_independently(self, joint):
-        robot = load(robot_text(chain(f'continuous:<mimic joint="{joint}"/>')))
+        robot = load(robot_text(chain_of_links(f'continuous:<mimic joint="{joint}"/>')))
         assert KinematicTree(robot).joint_names == ("j0",)
 
     def test_circular_mimic_joints_move_independently(self):
-        robot = load(robot_text(chain('continuous:<mimic joint="j1"/>', 'continuous:<mimic joint="j0"/>')))
+        robot = load(robot_text(chain_of_links('continuous:<mimic joint="j1"/>', 'continuous:<mimic joint="j0"/>')))
         assert KinematicTree(robot).joint_names == ("j0", "j1")
 
     @pytest.mark.parametrize("other_joints", [(), ("continuous",)])
     def test_mimic_of_fixed_joint_stays_at_offset(self, other_joints):
         follower = 'continuous:<axis xyz="0 0 1"/><mimic joint="j0" multiplier="3" offset="0.5"/>'
-        robot = load(robot_text(chain("fixed", follower, *other_joints)))
+        robot = load(robot_text(chain_of_links("fixed", follower, *other_joints)))
         tree = KinematicTree(robot)
         assert len(tree.joint_names) == len(other_joints)
         for frames in (tree.forward([7.0] * len(other_joints)), tree.forward(np.full((2, len(other_joints)), 7.0))[1]):
@@ -182,13 +182,13 @@ class TestJointsWithoutPosition:
 
     @pytest.mark.parametrize("kind", ["fixed", "floating", "planar"])
     def test_fixed_floating_and_planar_joints_have_no_position(self, kind):
-        tree = KinematicTree(load(robot_text(chain(f'{kind}:<origin xyz="1 2 3"/>'))))
+        tree = KinematicTree(load(robot_text(chain_of_links(f'{kind}:<origin xyz="1 2 3"/>'))))
         assert tree.joint_names == ()
         np.testing.assert_array_equal(tree.forward([])[1][:3, 3], [1, 2, 3])
         assert tree.forward(np.empty((4, 0))).shape == (4, 2, 4, 4)
 
     def test_joint_without_axis_direction_has_no_position(self):
-        tree = KinematicTree(load(robot_text(chain("continuous:<axis/>"))))
+        tree = KinematicTree(load(robot_text(chain_of_links("continuous:<axis/>"))))
         assert tree.joint_names == ()
 
     def test_forward_of_single_link_robot(self):

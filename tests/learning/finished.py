@@ -9,7 +9,7 @@ from pathlib import Path
 from linkwright.learning.course import Lesson
 
 
-def finish(lessons: Iterable[Lesson], workspace: Path) -> None:
+def finish_lessons(lessons: Iterable[Lesson], workspace: Path) -> None:
     """Copy the initial files and the solutions of lessons in the order in which a learner gets them."""
     for lesson in lessons:
         for source in (lesson.start, *(step.solution for step in lesson.steps)):

@@ -27,7 +27,7 @@ from linkwright.messages import (
 from tests.messages.random_messages import random_message, rosbags_object, rosbags_store
 
 OF_ROSBAGS = sorted(rosbags_store().fielddefs) if find_spec("rosbags") else []
-ALL = sorted(interface_names("msg"))
+ALL_TYPES = sorted(interface_names("msg"))
 
 
 @pytest.mark.parametrize("name", OF_ROSBAGS)
@@ -40,7 +40,7 @@ def test_serialized_bytes_match_rosbags(name):
         assert deserialize(big_endian, type(message)) == message
 
 
-@given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32))
+@given(name=st.sampled_from(ALL_TYPES), seed=st.integers(0, 2**32))
 @settings(max_examples=400, deadline=None)
 def test_message_round_trip_is_lossless(name, seed):
     message = random_message(get_message(name), seed)
@@ -49,7 +49,7 @@ def test_message_round_trip_is_lossless(name, seed):
         assert deserialize(form, type(message)) == message
 
 
-def parts(name):
+def message_classes(name):
     cls = get_interface(name)
     if hasattr(cls, "Goal"):
         return [cls.Goal, cls.Result, cls.Feedback, cls.Impl.FeedbackMessage, cls.Impl.SendGoalService.Request,
@@ -59,12 +59,12 @@ def parts(name):
 
 @pytest.mark.parametrize("name", interface_names("srv") + interface_names("action"))
 def test_service_and_action_parts_round_trip(name):
-    for cls in parts(name):
+    for cls in message_classes(name):
         message = random_message(cls, 3)
         assert deserialize(serialize(message), cls) == message
 
 
-@given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32), data=st.data())
+@given(name=st.sampled_from(ALL_TYPES), seed=st.integers(0, 2**32), data=st.data())
 @settings(max_examples=600, deadline=None)
 def test_corrupted_bytes_are_rejected_or_deserialized(name, seed, data):
     cls = get_message(name)

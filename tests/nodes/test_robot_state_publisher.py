@@ -20,7 +20,7 @@ from tests.geometry.rotations import quaternion_about
 from tests.nodes.harness import joint, mimic, robot
 from tests.places import TUTORIAL_PACKAGES
 
-TWO = robot(joint("a"), joint("b", xyz="1 0 0", parent="a_link"))
+TWO_JOINTS = robot(joint("a"), joint("b", xyz="1 0 0", parent="a_link"))
 MIMICS = robot(
     joint("master"),
     joint("follower", content=mimic("master", "multiplier='-2' offset='0.5'")),
@@ -92,7 +92,7 @@ async def test_description_static_and_moving_transforms_are_published(harness, c
 
 
 async def test_topics_have_expected_qos(harness, log):
-    harness.robot_state_publisher(TWO)
+    harness.robot_state_publisher(TWO_JOINTS)
     listener = harness.graph.create_node("listener")
     listener.create_subscription(JointState, "/joint_states", print, 1)
     late_messages = []
@@ -101,7 +101,7 @@ async def test_topics_have_expected_qos(harness, log):
         JointState, "/joint_states", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
     )
     await harness.graph.settle()
-    assert [message.data for message in late_messages] == [TWO]
+    assert [message.data for message in late_messages] == [TWO_JOINTS]
     # The other subscriptions request reliable joint states, but robot_state_publisher matches best effort too.
     assert sensor.get_subscription_count() == 1
     topics_of_all_nodes = ("/parameter_events", "/rosout")
@@ -180,24 +180,24 @@ class TestMimic:
 
 class TestBadMessages:
     async def test_message_without_positions_is_ignored(self, harness, logged):
-        harness.robot_state_publisher(TWO)
+        harness.robot_state_publisher(TWO_JOINTS)
         await harness.send(JointState(name=["a", "b"]))
         upstream_text = 'about joint(s) "a"(,...) whose position member was empty.'
         assert logged("WARN") == [f"Robot state publisher ignored a JointState message {upstream_text}"]
         assert harness.tf == []
 
     async def test_message_with_more_positions_than_names_is_ignored(self, harness, logged):
-        harness.robot_state_publisher(TWO)
+        harness.robot_state_publisher(TWO_JOINTS)
         await harness.send(JointState(name=["a"], position=[1.0, 2.0]))
         assert logged("ERROR") == ["Robot state publisher ignored an invalid JointState message"]
 
     async def test_empty_message_is_ignored_silently(self, harness, logged):
-        harness.robot_state_publisher(TWO)
+        harness.robot_state_publisher(TWO_JOINTS)
         await harness.send(JointState())
         assert logged("WARN") == logged("ERROR") == []
 
     async def test_message_without_stamp_is_ignored(self, harness, logged):
-        harness.robot_state_publisher(TWO)
+        harness.robot_state_publisher(TWO_JOINTS)
         for _ in range(3):
             await harness.move({"a": 0.5}, stamp_ns=0)
         assert harness.tf == []
@@ -206,7 +206,7 @@ class TestBadMessages:
         ]
 
     async def test_first_of_duplicate_names_wins(self, harness, clock):
-        harness.robot_state_publisher(TWO)
+        harness.robot_state_publisher(TWO_JOINTS)
         stamp = Time.from_nanoseconds(clock.now_ns())
         await harness.send(JointState(header=Header(stamp=stamp), name=["a", "a"], position=[0.0, 1.0]))
         assert harness.buffer.lookup("base", "a_link")[6] == 1.0
@@ -366,19 +366,19 @@ class TestStart:
     @pytest.mark.parametrize("frequency", [-1.0, 0.0, 1000.5, float("nan")])
     async def test_frequency_out_of_range_is_rejected(self, harness, frequency):
         with pytest.raises(LinkwrightError, match="publish_frequency must be between 0 and 1000"):
-            harness.robot_state_publisher(TWO, publish_frequency=frequency)
+            harness.robot_state_publisher(TWO_JOINTS, publish_frequency=frequency)
 
     async def test_parameter_of_wrong_type_is_rejected(self, harness):
         with pytest.raises(LinkwrightError) as caught:
-            harness.robot_state_publisher(TWO, publish_frequency=30)
+            harness.robot_state_publisher(TWO_JOINTS, publish_frequency=30)
         assert caught.value.diagnostics[0].hint == "write 30.0"
 
     async def test_description_file_argument_is_accepted(self, harness, logged, tmp_path):
         path = tmp_path / "robot.urdf"
-        path.write_text(TWO, encoding="utf-8")
+        path.write_text(TWO_JOINTS, encoding="utf-8")
         RobotStatePublisher(harness.graph, NodeOptions(arguments=[str(path)]))
         await harness.graph.settle()
-        assert harness.descriptions == [TWO]
+        assert harness.descriptions == [TWO_JOINTS]
         assert logged("WARN")[0].startswith("No robot_description parameter, but command-line argument available.")
         with pytest.raises(LinkwrightError, match=r"URDF file 'missing.urdf' cannot be read: No such file"):
             RobotStatePublisher(harness.graph, NodeOptions(arguments=["missing.urdf"]))
@@ -387,7 +387,7 @@ class TestStart:
         arguments = ["--ros-args", "-r", "__node:=left", "-r", "/tf:=tf", "-p", "frame_prefix:=l_"]
         publisher = RobotStatePublisher(
             harness.graph,
-            NodeOptions(namespace="/arm", parameters={"robot_description": TWO}, arguments=arguments),
+            NodeOptions(namespace="/arm", parameters={"robot_description": TWO_JOINTS}, arguments=arguments),
         )
         assert publisher.node.get_fully_qualified_name() == "/arm/left"
         assert publisher.node.get_parameter("frame_prefix").value == "l_"
@@ -421,27 +421,27 @@ class TestUpdate:
         ],
     )
     async def test_invalid_description_is_rejected_and_last_one_stays(self, harness, text, reason):
-        publisher = harness.robot_state_publisher(TWO)
+        publisher = harness.robot_state_publisher(TWO_JOINTS)
         assert await harness.set(publisher, robot_description=text) == [(False, reason)]
-        assert publisher.node.get_parameter("robot_description").value == TWO
-        assert harness.descriptions == [TWO]
+        assert publisher.node.get_parameter("robot_description").value == TWO_JOINTS
+        assert harness.descriptions == [TWO_JOINTS]
         await harness.move({"a": 0.0})
         assert harness.moved_frames() == [["a_link"]]
 
     async def test_invalid_frequency_is_rejected(self, harness):
-        publisher = harness.robot_state_publisher(TWO)
+        publisher = harness.robot_state_publisher(TWO_JOINTS)
         reason = "publish_frequency must be between 0 and 1000"
         assert await harness.set(publisher, publish_frequency=2000.0) == [(False, reason)]
         assert await harness.set(publisher, publish_frequency=0.0) == [(False, reason)]
 
     async def test_description_of_wrong_type_is_rejected(self, harness):
-        publisher = harness.robot_state_publisher(TWO)
+        publisher = harness.robot_state_publisher(TWO_JOINTS)
         ((successful, reason),) = await harness.set(publisher, robot_description=3)
         assert not successful
         assert reason == "Wrong parameter type, expected 'Type.STRING' got 'Type.INTEGER'"
 
     async def test_ignore_timestamp_can_be_enabled_at_runtime(self, harness):
-        publisher = harness.robot_state_publisher(TWO)
+        publisher = harness.robot_state_publisher(TWO_JOINTS)
         await harness.set(publisher, ignore_timestamp=True)
         await harness.move({"a": 0.0}, stamp_ns=0)
         assert len(harness.tf) == 1
@@ -467,7 +467,7 @@ async def test_tutorial_robot_matches_forward_kinematics(harness, package):
 
 async def test_qos_overrides_are_applied(harness):
     publisher = harness.robot_state_publisher(
-        TWO,
+        TWO_JOINTS,
         **{"qos_overrides./tf.publisher.depth": 7, "qos_overrides./joint_states.subscription.reliability": "reliable"},
     )
     (info,) = publisher.node.get_publishers_info_by_topic("/tf")

@@ -11,18 +11,23 @@ from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.static_transform_publisher import StaticTransformPublisher, parse_arguments
 
-HALF = sqrt(0.5)
+SQRT_HALF = sqrt(0.5)
 
 
 @pytest.mark.parametrize(
     ("arguments", "translation", "rotation", "old_style"),
     [
         ("--frame-id map --child-frame-id odom", (0, 0, 0), (0, 0, 0, 1), False),
-        (f"--x 1 --y -2 --yaw {pi / 2} --frame-id map --child-frame-id odom", (1, -2, 0), (0, 0, HALF, HALF), False),
+        (
+            f"--x 1 --y -2 --yaw {pi / 2} --frame-id map --child-frame-id odom",
+            (1, -2, 0),
+            (0, 0, SQRT_HALF, SQRT_HALF),
+            False,
+        ),
         (f"--roll {pi} --frame-id map --child-frame-id odom", (0, 0, 0), (1, 0, 0, 0), False),
-        ("--qx 1 --qw 1 --frame-id map --child-frame-id odom", (0, 0, 0), (HALF, 0, 0, HALF), False),
-        (f"1 2 3 {pi / 2} 0 0 map odom", (1, 2, 3), (0, 0, HALF, HALF), True),
-        (f"1 2 3 0 {pi / 2} 0 map odom", (1, 2, 3), (0, HALF, 0, HALF), True),
+        ("--qx 1 --qw 1 --frame-id map --child-frame-id odom", (0, 0, 0), (SQRT_HALF, 0, 0, SQRT_HALF), False),
+        (f"1 2 3 {pi / 2} 0 0 map odom", (1, 2, 3), (0, 0, SQRT_HALF, SQRT_HALF), True),
+        (f"1 2 3 0 {pi / 2} 0 map odom", (1, 2, 3), (0, SQRT_HALF, 0, SQRT_HALF), True),
         ("1 2 3 0 0 1 0 map odom", (1, 2, 3), (0, 0, 1, 0), True),
     ],
 )  # fmt: skip

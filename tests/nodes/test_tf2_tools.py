@@ -34,14 +34,14 @@ def send(harness):
     return publish
 
 
-def started(harness, kind, *arguments):
+def start_tool(harness, kind, *arguments):
     printed = []
     running = kind(harness.graph, NodeOptions(arguments=list(arguments), output=printed.append))
     return running, printed
 
 
 async def test_tf2_echo_waits_and_prints_transform(harness, send, logged):
-    _, printed = started(harness, Tf2Echo, "map", "base", "2")
+    _, printed = start_tool(harness, Tf2Echo, "map", "base", "2")
     await harness.clock.advance(1.2)
     waiting = 'Waiting for transform map ->  base: Invalid frame ID "map" passed to canTransform argument target_frame'
     assert logged("INFO")[0] == f"{waiting} - frame does not exist"
@@ -67,7 +67,7 @@ async def test_tf2_echo_waits_and_prints_transform(harness, send, logged):
 
 
 async def test_tf2_echo_reports_lookup_failure(harness, send):
-    running, printed = started(harness, Tf2Echo, "map", "base")
+    running, printed = start_tool(harness, Tf2Echo, "map", "base")
     await send("map", "base")
     await harness.clock.advance(1.0)
     running._buffer.clear()
@@ -78,7 +78,7 @@ async def test_tf2_echo_reports_lookup_failure(harness, send):
 
 @pytest.mark.parametrize("pitch", [pi / 2, -pi / 2])
 async def test_tf2_echo_handles_gimbal_lock(harness, send, pitch):
-    _, printed = started(harness, Tf2Echo, "map", "base")
+    _, printed = start_tool(harness, Tf2Echo, "map", "base")
     await send("map", "base", rpy=(0.0, pitch, 0.0))
     await harness.clock.advance(1.0)
     angle = "1.571" if pitch > 0 else "-1.571"
@@ -86,15 +86,15 @@ async def test_tf2_echo_handles_gimbal_lock(harness, send, pitch):
 
 
 async def test_tf2_echo_rejects_invalid_arguments(harness):
-    running, printed = started(harness, Tf2Echo, "map")
+    running, printed = start_tool(harness, Tf2Echo, "map")
     assert running.finished.result() == 1
     assert printed[0].startswith("Usage: tf2_echo source_frame target_frame [echo_rate]")
     with pytest.raises(LinkwrightError, match="Failed to convert rate argument 'fast' to a floating-point number"):
-        started(harness, Tf2Echo, "a", "b", "fast")
+        start_tool(harness, Tf2Echo, "a", "b", "fast")
 
 
 async def test_tf2_monitor_reports_all_frames(harness, send):
-    _, printed = started(harness, Tf2Monitor)
+    _, printed = start_tool(harness, Tf2Monitor)
     for _ in range(4):
         await send("map", "base")
         await harness.clock.advance(0.25)
@@ -112,7 +112,7 @@ async def test_tf2_monitor_reports_all_frames(harness, send):
 
 
 async def test_tf2_monitor_reports_chain_between_two_frames(harness, send):
-    _, printed = started(harness, Tf2Monitor, "map", "arm")
+    _, printed = start_tool(harness, Tf2Monitor, "map", "arm")
     await harness.clock.advance(1.0)
     assert printed == ["Waiting for transform chain to become available between map and arm "]
     await send("map", "base")
@@ -125,12 +125,12 @@ async def test_tf2_monitor_reports_chain_between_two_frames(harness, send):
     assert lines[3:5] == ["RESULTS: for map to arm", "Chain is: map -> base -> arm"]
     assert lines[5].startswith("Net delay     avg = ")
     assert [line.split(",")[0] for line in lines[8:10]] == ["Frame: arm", "Frame: base"]
-    assert started(harness, Tf2Monitor, "one")[0].finished.result() == 255
+    assert start_tool(harness, Tf2Monitor, "one")[0].finished.result() == 255
 
 
 async def test_view_frames_draws_tree(harness, send, logged, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    running, _ = started(harness, ViewFrames, "-t", "2", "-o", "tree")
+    running, _ = start_tool(harness, ViewFrames, "-t", "2", "-o", "tree")
     await send("map", "base")
     await send("base", "camera", fixed=True)
     await harness.clock.advance(1.9)
@@ -150,7 +150,7 @@ async def test_view_frames_draws_tree(harness, send, logged, tmp_path, monkeypat
 
 async def test_view_frames_without_transforms_writes_placeholder(harness, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    running, _ = started(harness, ViewFrames)
+    running, _ = start_tool(harness, ViewFrames)
     await harness.clock.advance(5.0)
     assert running.finished.result() == 0
     (drawing,) = tmp_path.glob("frames_????-??-??_??.??.??.gv")
@@ -159,10 +159,10 @@ async def test_view_frames_without_transforms_writes_placeholder(harness, tmp_pa
 
 async def test_view_frames_rejects_invalid_arguments(harness, logged, tmp_path):
     with pytest.raises(LinkwrightError, match="does not accept the arguments --wat"):
-        started(harness, ViewFrames, "--wat")
+        start_tool(harness, ViewFrames, "--wat")
     with pytest.raises(LinkwrightError, match="-t: invalid float value: 'long'"):
-        started(harness, ViewFrames, "-t", "long")
-    running, _ = started(harness, ViewFrames, "-t", "0", "-o", str(tmp_path / "no" / "folder"))
+        start_tool(harness, ViewFrames, "-t", "long")
+    running, _ = start_tool(harness, ViewFrames, "-t", "0", "-o", str(tmp_path / "no" / "folder"))
     await harness.clock.advance(0.01)
     assert running.finished.result() == 1
     assert "cannot write" in logged("ERROR")[0]
@@ -187,15 +187,15 @@ def send_lookup_goal(harness):
     return ask
 
 
-async def result_of(sent):
+async def lookup_result(sent):
     return (await (await sent).get_result_async()).result
 
 
 async def test_buffer_server_returns_transform(send_lookup_goal, send):
     await send("map", "base", xyz=(1.0, 2.0, 3.0))
-    result = await result_of(send_lookup_goal(target_frame="map", source_frame="base"))
+    result = await lookup_result(send_lookup_goal(target_frame="map", source_frame="base"))
     assert (result.error.error, result.transform.transform.translation.y) == (0, 2.0)
-    result = await result_of(
+    result = await lookup_result(
         send_lookup_goal(target_frame="map", source_frame="base", fixed_frame="map", advanced=True)
     )
     assert result.transform.child_frame_id == "base"
@@ -203,7 +203,7 @@ async def test_buffer_server_returns_transform(send_lookup_goal, send):
 
 async def test_buffer_server_reports_lookup_error(send_lookup_goal, send):
     await send("map", "base")
-    result = await result_of(send_lookup_goal(target_frame="map", source_frame="nowhere"))
+    result = await lookup_result(send_lookup_goal(target_frame="map", source_frame="nowhere"))
     assert (result.error.error, "nowhere" in result.error.error_string) == (1, True)
 
 
@@ -214,8 +214,8 @@ async def test_buffer_server_waits_until_goal_timeout(harness, send_lookup_goal,
     await harness.clock.advance(1.0)
     await send("map", "base", xyz=(1.0, 0.0, 0.0))
     await harness.clock.advance(0.1)
-    assert (await result_of(early_goal)).error.error == 1
-    assert (await result_of(late_goal)).transform.transform.translation.x == 1.0
+    assert (await lookup_result(early_goal)).error.error == 1
+    assert (await lookup_result(late_goal)).transform.transform.translation.x == 1.0
 
 
 async def test_buffer_server_goal_can_be_canceled(harness, send_lookup_goal):

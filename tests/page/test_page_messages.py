@@ -31,21 +31,21 @@ MESSAGES = [subclass for subclass in PageMessage.__subclasses__() if subclass is
 MESSAGES += [SetProperty] * 30
 
 
-def anything(kind: Any, name: str, rng: random.Random) -> Any:
+def generate_value(kind: Any, name: str, rng: random.Random) -> Any:
     """Generate a JSON value that a field of the protocol may contain."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
         hints = typing.get_type_hints(kind)
-        fields = {field: anything(hints[field], field, rng) for field in kind.__struct_fields__}
+        fields = {field: generate_value(hints[field], field, rng) for field in kind.__struct_fields__}
         return fields | ({"type": kind.__struct_config__.tag} if issubclass(kind, PageMessage) else {})
     if origin is typing.Literal:
         return rng.choice(arguments)
     if origin is list:
-        return [anything(arguments[0], name, rng) for _ in range(rng.choice([0, 1, 3, 7]))]
+        return [generate_value(arguments[0], name, rng) for _ in range(rng.choice([0, 1, 3, 7]))]
     if origin is dict:
-        return {rng.choice(WORDS): anything(arguments[1], name, rng) for _ in range(rng.choice([0, 1, 3]))}
+        return {rng.choice(WORDS): generate_value(arguments[1], name, rng) for _ in range(rng.choice([0, 1, 3]))}
     if origin in (typing.Union, types.UnionType):
-        return anything(rng.choice(arguments), name, rng)
+        return generate_value(rng.choice(arguments), name, rng)
     values: dict[Any, list[Any]] = {
         bool: [False, True],
         int: [0, 1, -1, 2**31, -(2**63), 10**30],
@@ -64,7 +64,7 @@ async def test_viewer_survives_random_page_messages(seed, tmp_path, monkeypatch)
         await client.opened()
         world.move_arm()
         for _ in range(30):
-            sent = [anything(rng.choice(MESSAGES), "", rng) for _ in range(20)]
+            sent = [generate_value(rng.choice(MESSAGES), "", rng) for _ in range(20)]
             for message in sent:
                 await client.socket.send_json(message)
             await client.drain(0.01)

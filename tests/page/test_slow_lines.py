@@ -38,7 +38,7 @@ Visualization Manager:
 MEGABIT_IN_BYTES = 125_000.0
 
 
-def cloud(count: int):
+def make_cloud(count: int):
     message = get_message("sensor_msgs/msg/PointCloud2")()
     field = get_message("sensor_msgs/msg/PointField")
     message.header.frame_id = "base"
@@ -48,7 +48,7 @@ def cloud(count: int):
     return message
 
 
-def image(width: int, height: int):
+def make_image(width: int, height: int):
     message = get_message("sensor_msgs/msg/Image")()
     message.header.frame_id = "base"
     message.width, message.height, message.encoding, message.step = width, height, "rgb8", 3 * width
@@ -126,7 +126,7 @@ async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int 
     node = world.graph.create_node("senses")
     clouds = node.create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
     images = node.create_publisher(get_message("sensor_msgs/msg/Image"), "/image", 1)
-    one_cloud, one_image = cloud(points), image(1280, 720)
+    one_cloud, one_image = make_cloud(points), make_image(1280, 720)
     for turn in range(round(seconds * rate)):
         world.move({("base", "tip"): (now(), 0, 0, 0, 0, 0, 1)})
         if turn % int(rate / 10) == 0:
@@ -172,7 +172,7 @@ async def test_single_cloud_is_completed_on_fast_connection():
             get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
         )
         await eventually(lambda: watcher.sizes)
-        clouds.publish(cloud(100_000))
+        clouds.publish(make_cloud(100_000))
         await eventually(
             lambda: (
                 watcher.contents_of_kind("cloud_points") and watcher.contents_of_kind("cloud_points")[-1]["step"] == 1
@@ -187,7 +187,7 @@ async def test_thinned_cloud_is_completed_when_page_is_idle():
             get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
         )
         await eventually(lambda: watcher.sizes)
-        clouds.publish(cloud(20_000))
+        clouds.publish(make_cloud(20_000))
         await eventually(lambda: bool(watcher.contents_of_kind("cloud_points")))
         assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         watcher.busy = 0.0
@@ -206,7 +206,7 @@ async def test_cloud_over_slow_connection_does_not_delay_transforms():
             get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
         )
         await eventually(lambda: watcher.sizes > 0)
-        clouds.publish(cloud(20_000))
+        clouds.publish(make_cloud(20_000))
         await eventually(lambda: watcher.contents_of_kind("cloud_points"))
         assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         x = 0.0
@@ -242,7 +242,7 @@ async def test_four_pages_drop_only_stale_frames():
             assert client.x == x  # all pages receive the last pose
 
 
-class Hand:
+class ManualClock:
     """A clock that the test sets."""
 
     def __init__(self) -> None:
@@ -253,7 +253,7 @@ class Hand:
 
 
 def test_connection_meter_learns_from_acknowledgments():
-    clock = Hand()
+    clock = ManualClock()
     line = ConnectionMeter(clock)
     line.sending(10)
     clock.now += 0.05
@@ -269,7 +269,7 @@ def test_connection_meter_learns_from_acknowledgments():
 
 
 def test_small_messages_do_not_fill_connection():
-    line = ConnectionMeter(Hand())
+    line = ConnectionMeter(ManualClock())
     line.sending(10)
     line.record_acknowledged(1)
     for _ in range(1000):
@@ -278,7 +278,7 @@ def test_small_messages_do_not_fill_connection():
 
 
 def test_connection_meter_survives_invalid_acknowledgments():
-    line = ConnectionMeter(Hand())
+    line = ConnectionMeter(ManualClock())
     for count in (-5, 10**12, 0):
         line.record_acknowledged(count)
     line.sending(10_000)

@@ -103,7 +103,7 @@ async def answer_pings(client: Client) -> None:
         await client.socket.receive()
 
 
-def contents(folder: Path) -> dict[str, bytes]:
+def file_contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
@@ -113,7 +113,7 @@ def list_uploads(scratch: Path) -> list[str]:
 
 @skipping
 async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     async with upload_server() as (world, sender):
         status, response = await sender.send("drive", files)
         assert status == 200, response
@@ -131,7 +131,7 @@ async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Pa
 
 @skipping
 async def test_single_file_is_shown_with_its_name(tmp_path: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     name = next(file for file in files if file.endswith(".mcap"))
     async with upload_server() as (_, sender):
         _, response = await sender.send("anything", {name: files[name]})
@@ -223,7 +223,7 @@ async def test_recording_of_program_is_shown_and_kept(tmp_path: Path):
 
 @skipping
 async def test_truncated_recording_is_shown_with_warning(tmp_path: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     name = next(file for file in files if file.endswith(".mcap"))
     async with upload_server() as (_, sender):
         status, response = await sender.send("x", {name: files[name][:-100]})
@@ -271,7 +271,7 @@ async def test_number_of_simultaneous_uploads_is_limited(scratch: Path):
 
 @skipping
 async def test_recording_is_closed_after_its_last_page(tmp_path: Path, scratch: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     async with upload_server() as (_, sender):
         _, response = await sender.send("drive", files)
         async with recording_page(sender, response["recording"]) as client:
@@ -287,7 +287,7 @@ async def test_recording_is_closed_after_its_last_page(tmp_path: Path, scratch: 
 @skipping
 async def test_open_recordings_are_limited_and_removed_at_exit(tmp_path: Path, scratch: Path, monkeypatch):
     monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", 60.0)
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     async with upload_server() as (_, sender):
         for _ in range(4):
             assert (await sender.send("drive", files))[0] == 200

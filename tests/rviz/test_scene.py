@@ -13,7 +13,7 @@ from linkwright.rviz.robot import SceneBuilder, frame_of
 from linkwright.urdf import read
 from linkwright.xacro import expand
 from linkwright.xmltree import parse
-from tests.page.test_files import package, write
+from tests.page.test_files import write_file, write_package
 
 
 def build_scene_of(text: str, prefix: str = "", packages: dict[str, Path] | None = None, name: str = "<text>"):
@@ -93,12 +93,12 @@ def test_links_have_frame_joint_and_source_location():
 
 
 def test_links_from_macros_have_macro_call_locations(tmp_path):
-    write(
+    write_file(
         tmp_path / "wheel.xacro",
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         '  <xacro:macro name="wheel" params="side">\n    <link name="${side}_wheel"/>\n  </xacro:macro>\n</robot>\n',
     )
-    main = write(
+    main = write_file(
         tmp_path / "main.xacro",
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         '  <xacro:include filename="wheel.xacro"/>\n  <xacro:wheel side="left"/>\n</robot>\n',
@@ -111,8 +111,8 @@ def test_links_from_macros_have_macro_call_locations(tmp_path):
 
 
 def test_meshes_have_url_format_and_scale(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "meshes" / "arm.STL")
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "meshes" / "arm.STL")
     links, builder = build_scene_of(
         robot_text(visual_element('<mesh filename="package://robot/meshes/arm.STL" scale="0.001 0.001 0.001"/>')),
         packages={"robot": share},
@@ -125,14 +125,14 @@ def test_meshes_have_url_format_and_scale(tmp_path):
 
 
 def test_relative_mesh_paths_are_resolved_from_naming_file(tmp_path):
-    write(tmp_path / "meshes" / "arm.obj")
+    write_file(tmp_path / "meshes" / "arm.obj")
     text = robot_text(visual_element('<mesh filename="../meshes/arm.obj"/>'))
     links, _ = build_scene_of(text, name=str(tmp_path / "urdf" / "r.urdf"))
     assert links["base"].visuals[0].url
 
 
 def test_missing_meshes_are_reported_with_searched_paths(tmp_path):
-    share = package(tmp_path / "robot", "robot")
+    share = write_package(tmp_path / "robot", "robot")
     links, builder = build_scene_of(
         robot_text(
             visual_element('<mesh filename="package://robot/meshes/gone.dae"/>')
@@ -152,8 +152,8 @@ def test_missing_meshes_are_reported_with_searched_paths(tmp_path):
 
 
 def test_textures_have_url(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "wood.png")
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "wood.png")
     material = '<material name="w"><color rgba="1 1 1 1"/><texture filename="package://robot/wood.png"/></material>'
     links, _ = build_scene_of(robot_text(visual_element('<box size="1 1 1"/>', material)), packages={"robot": share})
     assert "/wood.png?v=" in links["base"].visuals[0].texture

@@ -61,7 +61,7 @@ _SPECIAL: dict[tuple[type, str], SearchStrategy[Any]] = {
 
 
 @cache
-def _hints(kind: type) -> dict[str, Any]:
+def _field_hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
@@ -69,7 +69,7 @@ def values_of(kind: type, name: str) -> SearchStrategy[Any]:
     """Generate the values of a field; usual values are frequent."""
     if (kind, name) in _SPECIAL:
         return _SPECIAL[kind, name]
-    hint = _hints(kind)[name]
+    hint = _field_hints(kind)[name]
     if Element in (hint, *get_args(hint)):
         return st.none()
     usual = next(field.default for field in dataclasses.fields(kind) if field.name == name)

@@ -83,7 +83,7 @@ def outcome_of(assign, field):
     return [type(value).__name__, values]
 
 
-def set_field(message_class, field, value):
+def message_with_field(message_class, field, value):
     message = message_class()
     setattr(message, field, value)
     return message
@@ -94,7 +94,7 @@ def main():
     for (message_class, field), values in CASES.items():
         for name, value in values.items():
             for way, assign in (
-                ("set", lambda: set_field(message_class, field, value)),  # noqa: B023 - called at once
+                ("set", lambda: message_with_field(message_class, field, value)),  # noqa: B023 - called at once
                 ("made", lambda: message_class(**{field: value})),  # noqa: B023
             ):
                 facts[f"{message_class.__name__}.{field} {way} of {name}"] = outcome_of(assign, field)

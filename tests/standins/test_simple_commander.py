@@ -17,7 +17,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 
 
 class Servers(Node):
@@ -159,7 +159,7 @@ def test_navigator_spins_plans_and_clears_costmaps(navigator, servers):
 
 @pytest.mark.parametrize("page", [DOCS / "tutorial-navigation.md", DOCS / "zh" / "tutorial-navigation.md"])
 def test_tutorial_patrol_program_visits_all_rooms(page, servers, monkeypatch, capsys):
-    (program,) = [block for block in blocks(page) if block.title == "patrol.py"]
+    (program,) = [block for block in read_blocks(page) if block.title == "patrol.py"]
     monkeypatch.setattr(rclpy, "init", lambda: None)
     monkeypatch.setattr(rclpy, "shutdown", lambda: None)
     names = {"__name__": "patrol"}

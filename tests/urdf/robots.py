@@ -117,7 +117,7 @@ def robot_text(*parts: str, version: str | None = None) -> str:
     return f'<robot name="r"{attribute}>{"".join(parts)}</robot>'
 
 
-def chain(*joints: str) -> str:
+def chain_of_links(*joints: str) -> str:
     """Return links a, b, c, ...
 
     with joints between them; each joint is ``type`` or ``type: content``.

@@ -15,7 +15,7 @@ import pytest
 from linkwright.learning.course import find_course, load_course
 from linkwright.messages import String, get_message, get_service
 from linkwright.packages.programs.source_programs import source_programs
-from tests.learning.finished import finish
+from tests.learning.finished import finish_lessons
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 TIMEOUT_S = 90.0
@@ -34,7 +34,9 @@ pytestmark = [
 def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
     """Return a learner's workspace at the end of lesson 11, or of the lesson that the test names."""
     folder = tmp_path_factory.mktemp("workspace")
-    finish([lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder)
+    finish_lessons(
+        [lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder
+    )
     return folder
 
 

@@ -8,13 +8,13 @@ import shlex
 
 import pytest
 
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 from tests.domains import own_domain
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 PAGE = DOCS / "howto-real-robot.md"
-FIND_COMMAND = next(block.text for block in blocks(PAGE) if "linkwright topic list" in block.text)
+FIND_COMMAND = next(block.text for block in read_blocks(PAGE) if "linkwright topic list" in block.text)
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
@@ -40,7 +40,7 @@ def test_robot_is_found_with_documented_variables(robot, monkeypatch) -> None:
     robot()
     assert "/from_ros" in run_recipe_command("topic list")[0].splitlines()
     output, errors, status = run_recipe_command("doctor")
-    (shown,) = (line for block in blocks(PAGE) for line in block.text.splitlines() if ": 1 node, " in line)
+    (shown,) = (line for block in read_blocks(PAGE) for line in block.text.splitlines() if ": 1 node, " in line)
     assert (status, output.partition("1 node, ")[0]) == (0, shown.partition("1 node, ")[0]), errors
 
 

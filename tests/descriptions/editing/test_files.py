@@ -19,7 +19,7 @@ ROBOT = (
 )
 
 
-def raised(path: Path, z: float) -> EditPlan:
+def raise_link(path: Path, z: float) -> EditPlan:
     return plan_edit(examine(path), EditRequest("joint", "j", xyz=(0, 0, z)))
 
 
@@ -37,7 +37,7 @@ def test_edit_and_undo_preserve_other_bytes(tmp_path: Path, bytes_of: Callable[[
     path = tmp_path / "robot.urdf"
     path.write_bytes(bytes_of(ROBOT))
     history = EditHistory()
-    history.apply(raised(path, 2))
+    history.apply(raise_link(path, 2))
     after = bytes_of(ROBOT.replace("0 0 1", "0 0 2"))
     assert path.read_bytes() == after
     assert (history.can_undo, history.can_redo) == (True, False)
@@ -51,14 +51,14 @@ def test_edit_and_undo_preserve_other_bytes(tmp_path: Path, bytes_of: Callable[[
 def test_file_changed_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     path.write_bytes(ROBOT.encode())
-    plan, history = raised(path, 2), EditHistory()
+    plan, history = raise_link(path, 2), EditHistory()
     path.write_text(ROBOT.replace("é", "e"))
     with pytest.raises(EditRefusedError) as caught:
         history.apply(plan)
     assert caught.value.diagnostic.code == "EDIT107"
     assert path.read_text() == ROBOT.replace("é", "e").replace("\r\n", "\n")
 
-    history.apply(raised(path, 2))
+    history.apply(raise_link(path, 2))
     path.write_text("mine")
     with pytest.raises(EditRefusedError):
         history.undo()
@@ -89,7 +89,7 @@ def test_symlink_is_preserved(tmp_path: Path) -> None:
     real, link = tmp_path / "real.urdf", tmp_path / "robot.urdf"
     real.write_bytes(ROBOT.encode())
     link.symlink_to(real)
-    EditHistory().apply(raised(link, 2))
+    EditHistory().apply(raise_link(link, 2))
     assert link.is_symlink()
     assert "0 0 2" in real.read_text()
 

@@ -16,9 +16,17 @@ pytestmark = pytest.mark.extra("learn")
 
 SOURCE_ONLY = {"srt"}
 """Packages of pure Python without a wheel, which packs build."""
-CONDITIONAL = {"async-timeout", "backports-asyncio-runner", "cffi", "colorama", "pycparser", "pywinpty", "tomli"}
+CONDITIONAL_PACKAGES = {
+    "async-timeout",
+    "backports-asyncio-runner",
+    "cffi",
+    "colorama",
+    "pycparser",
+    "pywinpty",
+    "tomli",
+}
 """Packages that some systems or versions of Python do not need."""
-MISSING = {
+MISSING_PARTS = {
     "windows": {"cyclonedds": ["3.14"], "pocketsphinx": ["3.14"]},
     "macos-arm64": {"cyclonedds": ["3.14"], "embreex": "all", "pocketsphinx": ["3.14"]},
     "macos-x86_64": {
@@ -47,7 +55,7 @@ def test_all_packages_of_course_have_wheels(target: Target) -> None:
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_missing_parts_match_table_of_system(target: Target) -> None:
     missing = {part.packages[0] for part in missing_parts(target, ["learn"], locked_packages())}
-    expected_parts = MISSING[target.system]
+    expected_parts = MISSING_PARTS[target.system]
     assert missing == {name for name, pythons in expected_parts.items() if pythons == "all" or target.python in pythons}
 
 
@@ -57,7 +65,7 @@ def test_packages_of_some_systems_belong_to_listed_parts() -> None:
     }
     names_by_target = [package_names(target, ["learn"], locked_packages()) for target in TARGETS]
     sometimes = (set.union(*names_by_target) - set.intersection(*names_by_target)) & direct
-    assert sometimes - CONDITIONAL == {name for part in PARTS for name in part.packages}
+    assert sometimes - CONDITIONAL_PACKAGES == {name for part in PARTS for name in part.packages}
 
 
 def test_windows_targets_need_pywinpty() -> None:

@@ -9,7 +9,7 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from linkwright.rviz import RvizConfig
-from tests.page.test_files import package, write
+from tests.page.test_files import write_file, write_package
 from tests.viewer.scene import ARM, World, open_world, page, rows_by_id
 
 ARM_WITH_MESH = ARM.replace('<box size="1 2 3"/>', '<mesh filename="package://robot/meshes/arm.stl"/>')
@@ -315,7 +315,7 @@ async def test_changed_description_topic_is_subscribed():
 
 
 async def test_description_may_come_from_xacro_file(tmp_path):
-    path = write(
+    path = write_file(
         tmp_path / "r.xacro",
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <link name="${\'ba\' + \'se\'}"/>\n</robot>\n',
     )
@@ -341,7 +341,7 @@ async def test_description_may_come_from_xacro_file(tmp_path):
 
 
 async def test_missing_mesh_is_reported_in_status_and_once_in_log(tmp_path: Path):
-    share = package(tmp_path / "robot", "robot")
+    share = write_package(tmp_path / "robot", "robot")
     async with open_world(make_config(), packages={"robot": share}) as world:
         world.describe(ARM_WITH_MESH)
         await world.settle()
@@ -352,15 +352,15 @@ async def test_missing_mesh_is_reported_in_status_and_once_in_log(tmp_path: Path
         assert "'package://robot/meshes/arm.stl'" in text
         assert str(share / "meshes" / "arm.stl") in text
         assert world.logged().count(str(share / "meshes" / "arm.stl")) == 1
-        write(share / "meshes" / "arm.stl")
+        write_file(share / "meshes" / "arm.stl")
         world.describe(ARM_WITH_MESH)
         await world.settle()
         assert world.status("RobotModel")["base"] == ("ok", "Transform OK")
 
 
 async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "meshes" / "arm.stl")
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "meshes" / "arm.stl")
     async with open_world(make_config(), packages={"robot": share}) as world:
         world.describe(ARM_WITH_MESH)
         await world.settle()

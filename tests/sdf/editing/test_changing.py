@@ -12,7 +12,7 @@ from linkwright.sdf.editing import Change, EditError, change, copy, delete
 from tests.sdf.editing.texts import BOX, PLAIN, world_text, world_with
 
 
-def difference(old: str, new: str) -> list[str]:
+def changed_lines(old: str, new: str) -> list[str]:
     """Return the removed and the added lines, without surrounding spaces."""
     lines = difflib.ndiff(old.splitlines(), new.splitlines())
     return [f"{line[0]} {line[1:].strip()}" for line in lines if line[0] in "+-"]
@@ -20,7 +20,7 @@ def difference(old: str, new: str) -> list[str]:
 
 def lines_changed_by(text: str, *changes: Change) -> list[str]:
     original = world_text(text)
-    return difference(original.text, change(original, changes).text)
+    return changed_lines(original.text, change(original, changes).text)
 
 
 def test_world_entities_are_listed():
@@ -157,7 +157,7 @@ def test_renaming_updates_references():
         '<axis><xyz expressed_in="a">0 0 1</xyz></axis></joint>',
     )
     renamed = change(text, [Change("a", new_name='c "1"')])
-    lines = difference(text.text.replace("><", ">\n<"), renamed.text.replace("><", ">\n<"))
+    lines = changed_lines(text.text.replace("><", ">\n<"), renamed.text.replace("><", ">\n<"))
     assert [line for line in lines if line[0] == "+"] == [
         '+ <model name="c &quot;1&quot;">',
         '+ <pose relative_to="c &quot;1&quot;::l">0 0 1 0 0 0</pose>',
