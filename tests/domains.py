@@ -1,4 +1,7 @@
-"""ROS domains that no other process on this machine uses, such as other checkouts or workers of a parallel run."""
+"""ROS domains that no other process on this machine uses.
+
+Other processes are those of other checkouts, or other workers of a parallel run.
+"""
 
 from __future__ import annotations
 

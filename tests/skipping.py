@@ -1,4 +1,6 @@
-"""Event loops that skip their waits: a test of some seconds takes milliseconds, also on a busy machine.
+"""Event loops that skip their waits.
+
+A test of some seconds takes milliseconds, also on a busy machine.
 
 The time of such a loop advances to the next due call, and only if no work is left. Work takes no time, however slow the
 machine is, so rates, delays and order are the same in each run. Code that reads the computer's clock

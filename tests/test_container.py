@@ -1,4 +1,7 @@
-"""The container file runs the demo of the Makefile with an existing Python and existing extras, and not as root."""
+"""The container file runs the demo of the Makefile.
+
+It uses an existing Python and existing extras, and does not run as root.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""linkwright-core in an empty environment: small, complete, and with the findings of the whole."""
+"""linkwright-core in an empty environment.
+
+It is small and complete, and has the findings of the whole.
+"""
 
 from __future__ import annotations
 

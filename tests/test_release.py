@@ -1,4 +1,7 @@
-"""The results of `make release`: the changelog of a version, the bill of materials, and files without dates."""
+"""The results of `make release`.
+
+The tests cover the changelog of a version, the bill of materials, and files without dates.
+"""
 
 from __future__ import annotations
 

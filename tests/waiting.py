@@ -1,4 +1,6 @@
-"""Waiting for the results of other threads, processes and tasks, instead of waiting for a fixed time.
+"""Waiting for the results of other threads, processes and tasks.
+
+The tests do not wait for a fixed time.
 
 A passing test waits no longer than necessary, so the limits are generous: a busy machine causes no failures.
 """

@@ -1,4 +1,4 @@
-"""The end of a recording that another thread writes, because the process is about to be ended."""
+"""The end of a recording that another thread writes while the process is being ended."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The history of the last minutes in memory: its size, the state at a time, and further reading."""
+"""The history of the last minutes in memory.
+
+The tests cover its size, the state at a time, and further reading.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The arm seen from above, with a known scale of pixels, and the messages of the page's tools."""
+"""The arm seen from above, with a known scale of pixels.
+
+It also receives the messages of the page's tools.
+"""
 
 from __future__ import annotations
 

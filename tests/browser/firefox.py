@@ -1,4 +1,6 @@
-"""An installed Firefox, driven by WebDriver BiDi, which it supports itself (https://w3c.github.io/webdriver-bidi/).
+"""An installed Firefox, driven by WebDriver BiDi.
+
+Firefox supports this protocol itself (https://w3c.github.io/webdriver-bidi/).
 
 Playwright drives only its own build of Firefox, and Debian has no geckodriver; decision 0065 explains the choice.
 Without a display Firefox has no WebGL: on Linux that takes an X server, such as Xvfb.

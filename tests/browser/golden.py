@@ -1,4 +1,7 @@
-"""Small meshes with known bounds and colors, and robots with them: the expected drawing of a page and an export."""
+"""Small meshes with known bounds and colors, and robots with them.
+
+They give the expected drawing of a page and of an export.
+"""
 
 from __future__ import annotations
 

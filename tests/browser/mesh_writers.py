@@ -1,4 +1,7 @@
-"""Mesh files of all formats, written by hand: a box of 0.1 x 0.2 x 0.3 m with a corner at the origin."""
+"""Mesh files of all formats, written by hand.
+
+Each contains a box of 0.1 x 0.2 x 0.3 m with a corner at the origin.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The classroom in the page: a learner solves two steps, in both languages, with mouse and keyboard."""
+"""The classroom in the page.
+
+A learner solves two steps, in both languages, with mouse and keyboard.
+"""
 
 from __future__ import annotations
 

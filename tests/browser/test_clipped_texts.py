@@ -1,4 +1,7 @@
-"""Windows of three sizes in both languages: no control's text is clipped, and the scene has half of the window."""
+"""Windows of three sizes in both languages.
+
+No control's text is clipped, and the scene has half of the window.
+"""
 
 from __future__ import annotations
 

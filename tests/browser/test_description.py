@@ -1,4 +1,7 @@
-"""The panels of the description: tree, diagram, source and joint table show the same element."""
+"""The panels of the description.
+
+Tree, diagram, source and joint table show the same element.
+"""
 
 from __future__ import annotations
 

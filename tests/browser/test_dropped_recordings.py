@@ -1,4 +1,7 @@
-"""Recordings dropped on the page in a real browser: they open with their own timeline, or a reason is shown."""
+"""Recordings dropped on the page in a real browser.
+
+They open with their own timeline, or a reason is shown.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Editing of a robot in the page, with numbers and handles: changes of the source, in both directions."""
+"""Editing of a robot in the page, with numbers and handles.
+
+The tests cover changes of the source in both directions.
+"""
 
 from __future__ import annotations
 

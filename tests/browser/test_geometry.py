@@ -1,4 +1,7 @@
-"""Poses, paths, polygons, ranges, vectors and efforts in a real browser, and the rows of TF and the robot."""
+"""Geometry displays in a real browser, and the rows of TF and the robot.
+
+The tests cover poses, paths, polygons, ranges, vectors and efforts.
+"""
 
 from __future__ import annotations
 

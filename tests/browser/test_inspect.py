@@ -1,4 +1,7 @@
-"""Invisible properties, drawn at their positions: masses, inertias, joint axes, frames, collisions."""
+"""Invisible properties, drawn at their positions.
+
+The tests cover masses, inertias, joint axes, frames, collisions.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Light in the page: the studio compresses bright colors as film does; the camera's light keeps the given colors.
+"""Light in the page.
+
+The studio compresses bright colors as film does; the camera's light keeps the given colors.
 
 In `view`, robots of any color stand out from the background, also with software rendering.
 """

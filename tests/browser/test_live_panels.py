@@ -1,4 +1,7 @@
-"""The live panels in a real browser: plots, topics, node graph, parameters, log and teleop pad."""
+"""The live panels in a real browser.
+
+The tests cover plots, topics, node graph, parameters, log and teleop pad.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""`linkwright.show` in a notebook: a cell of JupyterLab shows the robot, with sliders for its joints."""
+"""`linkwright.show` in a notebook.
+
+A cell of JupyterLab shows the robot, with sliders for its joints.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Overlays on the scene: everything open at once, in windows of three sizes, and nothing overlaps."""
+"""Overlays on the scene.
+
+Nothing overlaps when everything is open at once, in windows of three sizes.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The open panels: the panels of the file on the first visit of a browser, and then the user's."""
+"""The open panels.
+
+A browser opens the panels of the file on its first visit, and then the user's.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The page of a program in a terminal of the classroom: it opens beside the lesson, takes keys, and closes."""
+"""The page of a program in a terminal of the classroom.
+
+It opens beside the lesson, takes keys, and closes.
+"""
 
 from __future__ import annotations
 

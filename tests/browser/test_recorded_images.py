@@ -1,4 +1,7 @@
-"""The images of a recording in windows of several sizes, and the message in place of an unreadable one."""
+"""The images of a recording in windows of several sizes.
+
+A message replaces an unreadable image.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Recording from the page in a real browser: topics and the last minutes become files that can be opened."""
+"""Recording from the page in a real browser.
+
+Topics and the last minutes become files that can be opened.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of the model's file while it is shown: change, error, repair; joint positions and camera stay."""
+"""Changes of the model's file while it is shown.
+
+The tests cover changes, errors and repairs; joint positions and camera stay.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Editing of a robot's files in the page: findings, completion, saving, and notices of external changes."""
+"""Editing of a robot's files in the page.
+
+The tests cover findings, completion, saving, and notices of external changes.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The terminal in the page: commands, keys, sizes, several terminals, and leaving it with the keyboard."""
+"""The terminal in the page.
+
+The tests cover commands, keys, sizes, several terminals, and leaving it with the keyboard.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The timeline of a recording in a real browser: images, plots and frames belong to its time."""
+"""The timeline of a recording in a real browser.
+
+Images, plots and frames belong to its time.
+"""
 
 from __future__ import annotations
 

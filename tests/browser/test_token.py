@@ -1,4 +1,7 @@
-"""The token: in the printed address, and then in the browser's storage for this host and port."""
+"""The token of a page.
+
+It is in the printed address, and then in the browser's storage for this host and port.
+"""
 
 from __future__ import annotations
 

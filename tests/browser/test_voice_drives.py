@@ -1,4 +1,6 @@
-"""From the microphone to the wheels: words are enrolled and spoken in a real browser, and mbot obeys.
+"""From the microphone to the wheels.
+
+Words are enrolled and spoken in a real browser, and mbot obeys.
 
 The browser's microphone is a file, which gets another word before each opening of the microphone.
 """

@@ -1,4 +1,7 @@
-"""An example repository with a pull request that changes a robot, on a service for the steps of templates."""
+"""An example repository with a pull request that changes a robot.
+
+It is on a service for the steps of templates.
+"""
 
 from __future__ import annotations
 

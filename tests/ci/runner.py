@@ -1,4 +1,7 @@
-"""A runner of composite actions with the features that our actions use: bash, inputs, outputs and conditions."""
+"""A runner of composite actions with the features that Linkwright's actions use.
+
+These are bash, inputs, outputs and conditions.
+"""
 
 from __future__ import annotations
 

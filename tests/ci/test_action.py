@@ -1,4 +1,7 @@
-"""The action for GitHub and Gitea in an example repository: its files, its comment, and code that it does not run."""
+"""The action for GitHub and Gitea in an example repository.
+
+The tests cover its files, its comment, and code that it does not run.
+"""
 
 from __future__ import annotations
 

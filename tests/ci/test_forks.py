@@ -1,4 +1,7 @@
-"""The comment on a pull request of a fork: it comes from an artifact that the fork could have made."""
+"""The comment on a pull request of a fork.
+
+It comes from an artifact that the fork could have made.
+"""
 
 from __future__ import annotations
 

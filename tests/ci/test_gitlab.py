@@ -1,4 +1,7 @@
-"""The template for GitLab in an example repository: its note, its code quality report, and code that is not run."""
+"""The template for GitLab in an example repository.
+
+The tests cover its note, its code quality report, and code that is not run.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""`linkwright check` for several files and folders: selection, formats, settings, fixes, exit status."""
+"""`linkwright check` for several files and folders.
+
+The tests cover selection, formats, settings, fixes, exit status.
+"""
 
 from __future__ import annotations
 

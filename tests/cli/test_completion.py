@@ -1,4 +1,7 @@
-"""Completion of commands, options, packages, launch files and names of the graph, also in the shell."""
+"""Completion of commands, options, packages, launch files and names of the graph.
+
+It is also tested in the shells.
+"""
 
 from __future__ import annotations
 

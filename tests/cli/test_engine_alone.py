@@ -1,4 +1,7 @@
-"""The engine without linkwright: the contents of linkwright-core, and the output of its commands."""
+"""The engine without linkwright.
+
+The tests cover the contents of linkwright-core, and the output of its commands.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Commands on a full disk, or with full or closed standard streams: one message, and no loss."""
+"""Commands on a full disk, or with full or closed standard streams.
+
+The tests cover one message, and no loss.
+"""
 
 from __future__ import annotations
 

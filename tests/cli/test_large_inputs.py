@@ -1,4 +1,7 @@
-"""The work and output of `check` grow linearly with its input, counted in calls and characters."""
+"""The work and output of `check` grow linearly with its input.
+
+The tests count calls and characters.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""``linkwright pkg create``: files, output, refusals, and packages for the real build tools."""
+"""``linkwright pkg create``.
+
+The tests cover files, output, refusals, and packages for the real build tools.
+"""
 
 from __future__ import annotations
 

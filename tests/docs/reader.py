@@ -1,4 +1,6 @@
-"""A simulated reader of a page, with terminals, an empty home folder, and the installed wheel.
+"""A simulated reader of a page.
+
+The reader has terminals, an empty home folder, and the installed wheel.
 
 The reader types each line of the page's shell blocks and writes each file that has a title, in the order of the page.
 A line that opens a page of Linkwright keeps its terminal until the next such line; other lines are typed beside it.

@@ -1,4 +1,7 @@
-"""Installation commands on pages, in messages and in robots, while no version is on a package index."""
+"""Installation commands on pages, in messages and in robots.
+
+They apply while no version is on a package index.
+"""
 
 from __future__ import annotations
 

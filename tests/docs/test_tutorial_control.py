@@ -1,4 +1,7 @@
-"""The third chapter of the tutorial, followed by a reader: nodes that drive mbot, and their tests."""
+"""The third chapter of the tutorial, followed by a reader.
+
+It covers nodes that drive mbot, and their tests.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The chapter about navigation; its program is tested in tests/standins/test_simple_commander.py."""
+"""The chapter about navigation.
+
+Its program is tested in tests/standins/test_simple_commander.py.
+"""
 
 from __future__ import annotations
 

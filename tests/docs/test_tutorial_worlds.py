@@ -1,4 +1,7 @@
-"""The second chapter of the tutorial, followed by a reader: a world, and a package that loads mbot into it."""
+"""The second chapter of the tutorial, followed by a reader.
+
+It covers a world, and a package that loads mbot into it.
+"""
 
 from __future__ import annotations
 

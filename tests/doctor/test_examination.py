@@ -1,4 +1,7 @@
-"""The examination of a record: each problem is found, and a graph without problems has no findings."""
+"""The examination of a record.
+
+Each problem is found, and a graph without problems has no findings.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Driving a robot without physics: the simulator with the inferred physics, in this process."""
+"""Driving a robot without physics.
+
+The simulator with the inferred physics runs in this process.
+"""
 
 from __future__ import annotations
 

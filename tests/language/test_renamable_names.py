@@ -1,4 +1,7 @@
-"""Renaming from any file: computed names, mentions, launch arguments, SDF, and descriptions that lack a package."""
+"""Renaming from any file.
+
+The tests cover computed names, mentions, launch arguments, SDF, and descriptions that lack a package.
+"""
 
 from __future__ import annotations
 

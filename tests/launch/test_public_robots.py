@@ -1,4 +1,7 @@
-"""Constructs in the launch files of public robots that launch and launch_ros do not document."""
+"""Undocumented constructs in the launch files of public robots.
+
+The documentation of launch and launch_ros does not mention them.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A learner's progress through a course: files, checks, hints, solutions, and the stored progress."""
+"""A learner's progress through a course.
+
+The tests cover files, checks, hints, solutions, and the stored progress.
+"""
 
 import importlib.util
 import json

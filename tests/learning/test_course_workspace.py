@@ -1,4 +1,7 @@
-"""The workspace of a learner at the end of the course is an ordinary one, which colcon builds and tests."""
+"""The workspace of a learner at the end of the course.
+
+It is an ordinary workspace, which colcon builds and tests.
+"""
 
 import os
 import subprocess

@@ -1,4 +1,7 @@
-"""An exercise in pages: its text, the state of the judge in the running world, and the scores of the program."""
+"""An exercise in pages.
+
+The tests cover its text, the state of the judge in the running world, and the scores of the program.
+"""
 
 from __future__ import annotations
 

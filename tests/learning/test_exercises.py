@@ -1,4 +1,7 @@
-"""Exercises: their judges are fair, their solutions score as they should, and results repeat."""
+"""Exercises.
+
+Their judges are fair, their solutions score as they should, and results repeat.
+"""
 
 import json
 import os

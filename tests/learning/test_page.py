@@ -1,4 +1,7 @@
-"""A course in pages: steps, checks after changes, hints, answers, solutions, and hostile requests."""
+"""A course in pages.
+
+The tests cover steps, checks after changes, hints, answers, solutions, and hostile requests.
+"""
 
 from __future__ import annotations
 

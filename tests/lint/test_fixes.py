@@ -1,4 +1,7 @@
-"""Fixes: the changed and unchanged parts, and files that are written completely or not at all."""
+"""Fixes.
+
+The tests cover the changed and unchanged parts, and files that are written completely or not at all.
+"""
 
 from __future__ import annotations
 

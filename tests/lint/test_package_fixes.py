@@ -1,4 +1,7 @@
-"""Fixes of package.xml, setup.py and CMakeLists.txt: the finding disappears, and the format remains."""
+"""Fixes of package.xml, setup.py and CMakeLists.txt.
+
+The finding disappears, and the format remains.
+"""
 
 from __future__ import annotations
 

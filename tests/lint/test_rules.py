@@ -1,4 +1,7 @@
-"""The cases of the pages in this folder: findings with location, message, notes, hint and fix."""
+"""The cases of the pages in this folder.
+
+The tests compare the location, message, notes, hint and fix of each finding.
+"""
 
 from __future__ import annotations
 

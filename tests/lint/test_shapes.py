@@ -1,4 +1,7 @@
-"""The rules about masses, shapes, meshes and materials, with real robots and extreme numbers."""
+"""The rules about masses, shapes, meshes and materials.
+
+They check real robots and extreme numbers.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The folders of an editor: added, removed, renamed and deleted while the server runs; its progress."""
+"""The folders of an editor, and the progress that the server reports.
+
+Folders are added, removed, renamed and deleted while the server runs.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Inlay hints, lenses, colors, semantic tokens, links, workspace symbols and macro calls, through the protocol."""
+"""Requests that annotate a text, through the protocol.
+
+The tests cover inlay hints, lenses, colors, semantic tokens, links, workspace symbols and macro calls.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The memory of a server over a long time; ``benchmarks/soak_editor.py`` does this for an hour."""
+"""The memory of a server over a long time.
+
+``benchmarks/soak_editor.py`` does this for an hour.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Messages of any class with random values, and equal objects of rosbags, whose bytes must be equal."""
+"""Messages of any class with random values, and equal objects of rosbags.
+
+The bytes of both must be equal.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Messages as bytes: rosbags writes the same bytes, and invalid bytes raise an error instead of a crash."""
+"""Messages as bytes.
+
+Rosbags writes the same bytes, and invalid bytes raise an error instead of a crash.
+"""
 
 from __future__ import annotations
 

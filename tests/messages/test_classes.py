@@ -1,4 +1,7 @@
-"""The classes of messages behave as those of rosidl_generator_py (Humble), and raise errors with the same texts."""
+"""The classes of messages behave as those of rosidl_generator_py (Humble).
+
+They raise errors with the same texts.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Write the current findings into the Markdown files: ``python -m tests.mistakes``; read the difference afterwards."""
+"""Write the current findings into the Markdown files.
+
+Run ``python -m tests.mistakes``, and read the difference afterwards.
+"""
 
 from __future__ import annotations
 

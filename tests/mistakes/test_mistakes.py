@@ -1,4 +1,7 @@
-"""Findings about realistic mistakes: the position to the column, the wording, and a hint with the fix."""
+"""Findings about realistic mistakes.
+
+The tests cover the position to the column, the wording, and a hint with the fix.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""After any valid message of a page, the viewer continues, and the configuration can be saved."""
+"""After any valid message of a page, the viewer continues.
+
+The configuration can still be saved.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Real processes: the `linkwright` command and users' programs, and the processes that they leave."""
+"""The processes of the `linkwright` command and of users' programs.
+
+The tests also check the processes that these leave.
+"""
 
 from __future__ import annotations
 

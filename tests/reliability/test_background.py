@@ -1,4 +1,7 @@
-"""Programs that a script starts with ``&`` inherit an ignored SIGINT; ``kill -INT`` ends them, as it ends ROS's."""
+"""Programs that a script starts with ``&`` inherit an ignored SIGINT.
+
+``kill -INT`` ends them, as it ends ROS's.
+"""
 
 from __future__ import annotations
 

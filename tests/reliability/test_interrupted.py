@@ -1,4 +1,7 @@
-"""Ctrl-C at every moment: the program ends at once with the right status, and leaves nothing behind."""
+"""Ctrl-C at every moment.
+
+The program ends at once with the right status, and leaves nothing behind.
+"""
 
 from __future__ import annotations
 

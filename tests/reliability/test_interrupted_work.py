@@ -1,4 +1,7 @@
-"""Ctrl-C while a command has much to do: it ends with the status for that, and without a traceback."""
+"""Ctrl-C while a command has much to do.
+
+It ends with the status for that, and without a traceback.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A robot that another process drives: it stops if the process is killed, and continues if the process leaves."""
+"""A robot that another process drives.
+
+It stops if the process is killed, and continues if the process leaves.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Scenarios that run in both versions with the same seeds: noise, changes, bounds and errors."""
+"""Scenarios that run in both versions with the same seeds.
+
+The tests cover noise, changes, bounds and errors.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lines of a review about Python files that still import or call what a module no longer has so."""
+"""The lines of a review about Python files that use removed parts of a module."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The lines of a review about targets, conditions, versions and interfaces of a CMakeLists.txt."""
+"""The lines of a review about changes of a CMakeLists.txt.
+
+The tests cover targets, conditions, versions and interfaces.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Contents of plugins, folders, templates and descriptions of packages in the lines about changes."""
+"""The lines of a review about the contents of changed elements.
+
+The tests cover plugins, folders, templates and descriptions of packages.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of descriptions in a review: arguments, moved parts, breaking changes, unreadable files."""
+"""Changes of descriptions in a review.
+
+The tests cover arguments, moved parts, breaking changes, unreadable files.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The reach of a robot in a review: the largest distance, found by a search instead of chance."""
+"""The reach of a robot in a review.
+
+It is the largest distance, found by a search instead of chance.
+"""
 
 from __future__ import annotations
 

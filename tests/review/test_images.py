@@ -1,4 +1,7 @@
-"""Images of robots in the page: only of those that look different, with the changed links outlined."""
+"""Images of robots in the page.
+
+Only robots that look different have images, with the changed links outlined.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of ``if`` statements in Python launch files in a review: they are conditions of the actions in them."""
+"""Changes of ``if`` statements in Python launch files in a review.
+
+They are conditions of the actions in them.
+"""
 
 from __future__ import annotations
 

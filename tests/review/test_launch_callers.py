@@ -1,4 +1,7 @@
-"""Changes of launch files that others include in a review: moved, with new requirements, or in another language."""
+"""Changes in a review of launch files that others include.
+
+The files are moved, have new requirements, or are in another language.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Contents of added and removed launch actions, settings under conditions, and parameters of ROS 1."""
+"""Contents of added and removed launch actions in a review.
+
+The tests also cover settings under conditions, and parameters of ROS 1.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of launch actions in Python, XML and YAML in a review, and of functions that create actions."""
+"""Changes of launch actions in Python, XML and YAML in a review.
+
+Functions that create actions are compared, too.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes that a review lists once: names that are edited alike, and the values of one inertial."""
+"""Changes that a review lists once.
+
+These are names that are edited alike, and the values of one inertial.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Files that move inside their package in a review, and plugin descriptions without an export."""
+"""Files that move inside their package in a review.
+
+The tests also cover plugin descriptions without an export.
+"""
 
 from __future__ import annotations
 

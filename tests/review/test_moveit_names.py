@@ -1,4 +1,7 @@
-"""Breaking changes of the parameter files of MoveIt: controllers, actions, planners and joints with limits."""
+"""Breaking changes of the parameter files of MoveIt.
+
+The tests cover controllers, actions, planners and joints with limits.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of launch files, worlds, parameters, interfaces, manifests, maps and meshes in a review."""
+"""Changes of files other than descriptions in a review.
+
+The tests cover launch files, worlds, parameters, interfaces, manifests, maps and meshes.
+"""
 
 from __future__ import annotations
 

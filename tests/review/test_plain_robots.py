@@ -1,4 +1,7 @@
-"""Changes of plain URDF in a review: expressions for xacro, added links, and meshes under other paths."""
+"""Changes of plain URDF in a review.
+
+The tests cover expressions for xacro, added links, and meshes under other paths.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of YAML files whose values have another place: renamed and moved parts, and items of lists."""
+"""Changes of YAML files whose values have another place.
+
+The tests cover renamed and moved parts, and items of lists.
+"""
 
 from __future__ import annotations
 

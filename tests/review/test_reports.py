@@ -1,4 +1,7 @@
-"""Reports: nothing of a repository becomes markup, and a change of a shared file is listed once."""
+"""Reports.
+
+Nothing of a repository becomes markup, and a change of a shared file is listed once.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Scenes in 3D in the page: both versions of a robot with their meshes, bounded, and with no file from elsewhere."""
+"""Scenes in 3D in the page of a review.
+
+They show both versions of a robot with their meshes, are bounded, and contain no file from elsewhere.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of SDF models in a review: mass properties, totals, values of added elements, and images."""
+"""Changes of SDF models in a review.
+
+The tests cover mass properties, totals, values of added elements, and images.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Topics and services of changed sources that unchanged sources of the same package use, too."""
+"""Topics and services of changed sources that unchanged sources use, too.
+
+The sources are in the same package.
+"""
 
 from __future__ import annotations
 

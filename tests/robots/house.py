@@ -1,4 +1,7 @@
-"""mbot in the house with nav2's servers, with the parameters of my_robot_navigation: all in one thread, in lock-step."""
+"""mbot in the house with nav2's servers, all in one thread, in lock-step.
+
+The servers use the parameters of my_robot_navigation.
+"""
 
 from __future__ import annotations
 

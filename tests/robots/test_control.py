@@ -1,4 +1,7 @@
-"""The package of control nodes: each drives mbot through a simulated world, and its motion is checked."""
+"""The package of control nodes.
+
+Each drives mbot through a simulated world, and its motion is checked.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""mbot as a simulator needs it: mbot_gazebo.xacro with every choice of sensors, for both Gazebos."""
+"""mbot as a simulator needs it.
+
+The tests cover mbot_gazebo.xacro with every choice of sensors, for both Gazebos.
+"""
 
 from __future__ import annotations
 

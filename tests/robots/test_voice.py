@@ -1,4 +1,7 @@
-"""Voice commands for mbot in the playground, with the commands and the launch file of my_robot_voice."""
+"""Voice commands for mbot in the playground.
+
+They use the commands and the launch file of my_robot_voice.
+"""
 
 from __future__ import annotations
 

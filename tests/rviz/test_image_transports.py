@@ -1,4 +1,7 @@
-"""Images of image_transport's `compressed` and `compressedDepth`: unpacking, and the displays that show them."""
+"""Images of image_transport's `compressed` and `compressedDepth`.
+
+The tests cover unpacking, and the displays that show them.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Plugins of Gazebo classic with topics and services for forces, states, properties and joint trajectories."""
+"""Plugins of Gazebo classic with topics and services.
+
+The tests cover forces, states, properties and joint trajectories.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Plugins and sensors whose code fails: they stop, with one line in the log, and everything else continues."""
+"""Plugins and sensors whose code fails.
+
+They stop, with one line in the log, and everything else continues.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Drives of gz except the differential drive: cars and mecanum wheels, and the limits of all drives."""
+"""Drives of gz except the differential drive.
+
+The tests cover cars and mecanum wheels, and the limits of all drives.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Drives whose commander is lost: they stop; after a regular departure they keep their command."""
+"""Drives whose commander is lost.
+
+They stop; after a regular departure they keep their command.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Joints that follow other joints, and links without dynamics: the plugins of roboticsgroup_gazebo_plugins."""
+"""Joints that follow other joints, and links without dynamics.
+
+Both are plugins of roboticsgroup_gazebo_plugins.
+"""
 
 from __future__ import annotations
 

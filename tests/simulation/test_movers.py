@@ -1,4 +1,7 @@
-"""Plugins that move whole robots, in a plane or by skid steering, and that publish the true pose."""
+"""Plugins that move whole robots, in a plane or by skid steering.
+
+They publish the true pose.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Plugins: how they are found, their parameters, their nodes, and the messages about errors."""
+"""Plugins.
+
+The tests cover how they are found, their parameters, their nodes, and the messages about errors.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Assign values to fields of messages, and print the results as JSON; for real ROS 2 and for ours."""
+"""Assign values to fields of messages, and print the results as JSON.
+
+The program runs with real ROS 2 and with Linkwright.
+"""
 
 import json
 from array import array

@@ -1,4 +1,7 @@
-"""The linter tests that `linkwright pkg create` writes, run by plain pytest, which can import our rclpy too."""
+"""The linter tests that `linkwright pkg create` writes.
+
+Plain pytest runs them, and can import Linkwright's rclpy, too.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The advanced public examples: custom executors and groups, asyncio, events, reused messages."""
+"""The advanced public examples.
+
+The tests cover custom executors and groups, asyncio, events, reused messages.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The tables against real modules of Jazzy, where LINKWRIGHT_ROS_PYTHON names an interpreter that has them."""
+"""The tables of names, compared with real modules of Jazzy.
+
+LINKWRIGHT_ROS_PYTHON names an interpreter that has these modules.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The modules that tables of names describe: they have exactly those names, and behave like Python's own modules."""
+"""The modules that tables of names describe.
+
+They have exactly those names, and behave like Python's own modules.
+"""
 
 from __future__ import annotations
 

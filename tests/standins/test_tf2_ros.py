@@ -1,4 +1,7 @@
-"""Transforms as nodes use them: broadcasters, listeners, buffers, transformed messages, a buffer server's clients."""
+"""Transforms as nodes use them.
+
+The tests cover broadcasters, listeners, buffers, transformed messages, a buffer server's clients.
+"""
 
 from __future__ import annotations
 

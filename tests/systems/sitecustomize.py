@@ -1,4 +1,6 @@
-"""A Python without the features that another system lacks, for processes with this folder on ``PYTHONPATH``.
+"""A Python without the features that another system lacks.
+
+It is for processes with this folder on ``PYTHONPATH``.
 
 With ``LINKWRIGHT_TESTS_SYSTEM=windows``, the modules, functions, signals and sockets of POSIX are missing, event loops
 watch neither files nor signals, and ``sys.platform`` is ``win32``. With ``macos``, the features of Linux are missing:

@@ -1,4 +1,7 @@
-"""Linkwright on a Python without the features that Windows or macOS lacks: see `sitecustomize`."""
+"""Linkwright on a Python without the features that Windows or macOS lacks.
+
+See `sitecustomize`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The reader: defaults, urdfdom's rules for links, materials, axes and versions, and other elements."""
+"""The reader.
+
+The tests cover defaults, urdfdom's rules for links, materials, axes and versions, and other elements.
+"""
 
 from __future__ import annotations
 

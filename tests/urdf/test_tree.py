@@ -1,4 +1,7 @@
-"""The tree of links: the order of children, the parent that urdfdom keeps, and the printed tree."""
+"""The tree of links.
+
+The tests cover the order of children, the parent that urdfdom keeps, and the printed tree.
+"""
 
 from __future__ import annotations
 

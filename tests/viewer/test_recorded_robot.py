@@ -1,4 +1,7 @@
-"""The robot of a recording without transforms: its pose follows the joint states at any time."""
+"""The robot of a recording without transforms.
+
+Its pose follows the joint states at any time.
+"""
 
 from __future__ import annotations
 

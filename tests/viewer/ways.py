@@ -1,4 +1,6 @@
-"""Print the files of Linkwright whose functions run on two paths, as JSON, for `tests.viewer.test_data_path_length`.
+"""Print the files of Linkwright whose functions run on two paths, as JSON.
+
+The program is for `tests.viewer.test_data_path_length`.
 
 The paths are from the start of `linkwright view` to an open page, and from a slider of a page to the page's next joint
 positions and transforms. The process must not have imported Linkwright, because imports are part of the first path.

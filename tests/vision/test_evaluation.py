@@ -1,4 +1,7 @@
-"""Average precision in small, countable cases; docs/vision-training.md explains the comparison with pycocotools."""
+"""Average precision in small, countable cases.
+
+Docs/vision-training.md explains the comparison with pycocotools.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A process with a graph of Linkwright: ``python -m tests.wire.linkwright_program NODE_NAME``."""
+"""A process with a graph of Linkwright.
+
+Run it with ``python -m tests.wire.linkwright_program NODE_NAME``.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A node with services and an action for many simultaneous calls, on any rclpy of the interpreter.
+"""A node with services and an action for many simultaneous calls.
+
+It runs on any rclpy of the interpreter.
 
 ``-m tests.wire.load_peer NODE_NAME``. Below ``/NODE_NAME`` it serves `SetBool`, `BasicTypes`, `SetCameraInfo` and its
 parameters, and one goal of `Fibonacci` at a time: a new goal aborts the previous one.

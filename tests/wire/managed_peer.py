@@ -1,4 +1,6 @@
-"""A managed node with an action, on any rclpy of the interpreter: ``-m tests.wire.managed_peer NODE_NAME``.
+"""A managed node with an action, on any rclpy of the interpreter.
+
+Run it with ``-m tests.wire.managed_peer NODE_NAME``.
 
 The action is ``/NODE_NAME/fibonacci``; it rejects negative orders and aborts order 0. The node records all parameter
 events, and the transitions of the nodes that it watches.

@@ -1,4 +1,7 @@
-"""Functions for the programs of this folder that are a node, on any rclpy of their interpreter."""
+"""Functions for the programs of this folder that are a node.
+
+They run on any rclpy of the interpreter.
+"""
 
 from __future__ import annotations
 

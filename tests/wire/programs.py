@@ -1,4 +1,7 @@
-"""Control of a program of this folder in another process: each question and each answer is a line of JSON."""
+"""Control of a program of this folder in another process.
+
+Each question and each answer is a line of JSON.
+"""
 
 from __future__ import annotations
 

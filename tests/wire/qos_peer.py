@@ -1,4 +1,6 @@
-"""A node whose endpoints have any quality of service, on any rclpy: ``-m tests.wire.qos_peer NODE_NAME``.
+"""A node whose endpoints have any quality of service, on any rclpy.
+
+Run it with ``-m tests.wire.qos_peer NODE_NAME``.
 
 A quality of service is a dictionary: ``{"preset": "sensor_data"}``, or policies by name and, in seconds,
 ``deadline``, ``lifespan`` and ``lease``.

@@ -1,4 +1,6 @@
-"""A process with a real rclpy: ``$LINKWRIGHT_ROS_PYTHON -m tests.wire.real_peer NODE_NAME``.
+"""A process with a real rclpy.
+
+Run it with ``$LINKWRIGHT_ROS_PYTHON -m tests.wire.real_peer NODE_NAME``.
 
 It has publishers on ``/from_ros``, ``/states_from_ros`` and ``/images_from_ros``, a best-effort one on
 ``/frames_from_ros``, a latched one on ``/lasting_from_ros``, and subscriptions of the same types to ``/to_ros`` and so

@@ -1,4 +1,6 @@
-"""A process that behaves on the wire like real ROS 2 with rmw_cyclonedds_cpp, and needs only `cyclonedds`.
+"""A process that behaves on the wire like real ROS 2 with rmw_cyclonedds_cpp.
+
+It needs only `cyclonedds`.
 
 ``python -m tests.wire.ros_peer humble|jazzy NODE_NAME``. It has a publisher on ``/from_ros``, a subscription to
 ``/to_ros``, a server of ``/ros_flip``, and a client of ``/linkwright_flip``; it writes CDR by hand.

@@ -1,4 +1,7 @@
-"""The output of the `cyclonedds` command about our participants: an outside view without any knowledge of ROS."""
+"""The output of the `cyclonedds` command about Linkwright's participants.
+
+It is an outside view without any knowledge of ROS.
+"""
 
 from __future__ import annotations
 

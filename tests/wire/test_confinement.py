@@ -1,4 +1,7 @@
-"""By default no announcement leaves the machine: each interface has the membership that Linux needs to drop them."""
+"""By default no announcement leaves the machine.
+
+Each interface has the membership that Linux needs to drop them.
+"""
 
 from __future__ import annotations
 

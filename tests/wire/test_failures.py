@@ -1,4 +1,7 @@
-"""Errors of users' code in a thread of the transport: they are reported, and the thread continues."""
+"""Errors of users' code in a thread of the transport.
+
+They are reported, and the thread continues.
+"""
 
 from __future__ import annotations
 

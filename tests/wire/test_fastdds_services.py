@@ -1,4 +1,7 @@
-"""Services with Fast DDS, imitated by a process that sends the same packets; `test_real_services` has the real one."""
+"""Services with Fast DDS, imitated by a process that sends the same packets.
+
+`test_real_services` has the real one.
+"""
 
 from __future__ import annotations
 

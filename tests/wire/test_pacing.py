@@ -1,4 +1,7 @@
-"""Large samples for readers of Fast DDS, sent packet by packet; `test_real_ros` has a real reader."""
+"""Large samples for readers of Fast DDS, sent packet by packet.
+
+`test_real_ros` has a real reader.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Actions, managed nodes and parameter events with nodes of real ROS 2 on Fast DDS; see `test_real_ros`.
+"""Actions, managed nodes and parameter events with nodes of real ROS 2 on Fast DDS.
+
+See `test_real_ros`.
 
 Both sides run one program, `managed_peer`: one with the real rclpy, one with ours.
 """

@@ -1,4 +1,6 @@
-"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of ours over Zenoh; see `test_real_ros`.
+"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of ours over Zenoh.
+
+See `test_real_ros`.
 
 Both sides run the same programs; one side's subscriptions are remapped to the other side's publishers.
 """

@@ -1,4 +1,7 @@
-"""The nodes of the course's solutions under the real rclpy, unchanged, together with ours; see `test_real_ros`."""
+"""The nodes of the course's solutions under the real rclpy, unchanged, together with ours.
+
+See `test_real_ros`.
+"""
 
 from __future__ import annotations
 

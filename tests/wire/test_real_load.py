@@ -1,4 +1,6 @@
-"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and ours; see `test_real_ros`.
+"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and ours.
+
+See `test_real_ros`.
 
 Both sides run one program, `load_peer`: one with the real rclpy, one with ours.
 """

@@ -1,4 +1,6 @@
-"""All qualities of service between nodes of real ROS 2 on Fast DDS and ours, with their events; see `test_real_ros`.
+"""All QoS profiles between nodes of real ROS 2 on Fast DDS and of Linkwright.
+
+The tests also cover their events. See `test_real_ros`.
 
 Both sides run one program, `qos_peer`: one with the real rclpy, one with ours.
 """

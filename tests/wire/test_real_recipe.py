@@ -1,4 +1,7 @@
-"""The recipe of `docs/howto-real-robot.md`, with a robot whose node is real; see `test_real_ros`."""
+"""The recipe of `docs/howto-real-robot.md`, with a robot whose node is real.
+
+See `test_real_ros`.
+"""
 
 from __future__ import annotations
 

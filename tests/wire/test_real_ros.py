@@ -1,4 +1,7 @@
-"""Nodes of real ROS 2, where an interpreter with rclpy is named by LINKWRIGHT_ROS_PYTHON (see CONTRIBUTING.md)."""
+"""Nodes of real ROS 2.
+
+LINKWRIGHT_ROS_PYTHON names an interpreter with rclpy (see CONTRIBUTING.md).
+"""
 
 from __future__ import annotations
 

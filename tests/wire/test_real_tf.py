@@ -1,4 +1,6 @@
-"""Transforms, and messages of a custom package, with nodes of real ROS 2; see `test_real_ros`.
+"""Transforms, and messages of a custom package, with nodes of real ROS 2.
+
+See `test_real_ros`.
 
 The wheels of ROS 2 have neither: `tools/ros_types.py` builds them in the folder that LINKWRIGHT_ROS_TYPES names.
 """

@@ -1,4 +1,6 @@
-"""All types that nodes of real ROS 2 and ours have in common, value by value, in both directions; see `test_real_ros`.
+"""All types that real ROS 2 and Linkwright have in common, in both directions.
+
+The values are compared one by one. See `test_real_ros`.
 
 Both sides run one program, `typed_peer`: one with the real rclpy, one with ours.
 """

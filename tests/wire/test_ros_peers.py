@@ -1,4 +1,7 @@
-"""Nodes of real ROS 2, imitated by a process that behaves on the wire like rmw_cyclonedds_cpp."""
+"""Nodes of real ROS 2, imitated by a process.
+
+It behaves on the wire like rmw_cyclonedds_cpp.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Machines that are reached without multicast, as with ROS_STATIC_PEERS: they may start late, and return."""
+"""Machines that are reached without multicast, as with ROS_STATIC_PEERS.
+
+They may start late, and return.
+"""
 
 from __future__ import annotations
 

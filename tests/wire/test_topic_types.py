@@ -1,4 +1,7 @@
-"""The types of topics: announced by name, created once per domain, and kept until the domain is closed."""
+"""The types of topics.
+
+They are announced by name, created once per domain, and kept until the domain is closed.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A node that publishes, receives, serves and calls any type, on any rclpy of the interpreter.
+"""A node that publishes, receives, serves and calls any type.
+
+It runs on any rclpy of the interpreter.
 
 ``-m tests.wire.typed_peer NODE_NAME``. Values follow from type and seed (`values`), so that both sides know what to
 expect. Topics and services are named after their types.

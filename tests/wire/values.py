@@ -1,4 +1,7 @@
-"""Test values for the fields of any message, equal with every rclpy: extremes, empty and random values."""
+"""Test values for the fields of any message, equal with every rclpy.
+
+They are extreme, empty and random values.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Test cases in Markdown: each heading is a case, with blocks for files, arguments and the expected result.
+"""Test cases in Markdown.
+
+Each heading is a case, with blocks for files, arguments and the expected result.
 
 Fences: ``xacro`` is the content of the root element of ``main.xacro``; ``document`` is the whole of this file;
 ``file NAME`` is another file in the folder; ``arguments`` holds ``name:=value`` lines; ``urdf`` is the expansion

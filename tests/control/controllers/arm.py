@@ -1,4 +1,7 @@
-"""Helpers for arm controllers: joints on a test bench, trajectory messages, goals of actions."""
+"""Helpers for arm controllers.
+
+They create joints on a test bench, trajectory messages, and goals of actions.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Parameters of controllers: the current distribution's are declared, and those of Humble and Jazzy are read."""
+"""Parameters of controllers.
+
+The current distribution's are declared, and those of Humble and Jazzy are read.
+"""
 
 from __future__ import annotations
 

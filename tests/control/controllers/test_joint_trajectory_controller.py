@@ -1,4 +1,7 @@
-"""The joint trajectory controller: its commands over time, rejections, and the ends of goals."""
+"""The joint trajectory controller.
+
+The tests cover its commands over time, rejections, and the ends of goals.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Controllers whose commander is lost: velocities are stopped, positions and efforts are held."""
+"""Controllers whose commander is lost.
+
+Velocities are stopped, positions and efforts are held.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The trajectory controller of Universal Robots: the trajectory's time advances by the robot's speed scaling."""
+"""The trajectory controller of Universal Robots.
+
+The trajectory's time advances by the robot's speed scaling.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Controllers of ROS 1 for one joint, and trajectory controllers under their names of ROS 1."""
+"""Controllers of ROS 1 for one joint, and trajectory controllers under their old names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Controllers of steered vehicles, compared with the geometry of wheels that roll around one point."""
+"""Controllers of steered vehicles, compared with the geometry of rolling wheels.
+
+All wheels of a vehicle roll around one point.
+"""
 
 from __future__ import annotations
 

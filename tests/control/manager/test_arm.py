@@ -1,4 +1,7 @@
-"""An arm with mock hardware and a controller manager: trajectories by the action, from goal to result."""
+"""An arm with mock hardware and a controller manager.
+
+The tests follow trajectories of the action, from goal to result.
+"""
 
 from __future__ import annotations
 

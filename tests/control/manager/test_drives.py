@@ -1,4 +1,7 @@
-"""A drive with mock hardware and a controller manager: PID controllers in chained mode, and stops."""
+"""A drive with mock hardware and a controller manager.
+
+The tests cover PID controllers in chained mode, and stops.
+"""
 
 from __future__ import annotations
 

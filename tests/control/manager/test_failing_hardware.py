@@ -1,4 +1,7 @@
-"""A user's hardware that fails while controllers run: which controllers stop, which continue, and the recovery."""
+"""A user's hardware that fails while controllers run.
+
+The tests cover which controllers stop, which continue, and the recovery.
+"""
 
 from __future__ import annotations
 

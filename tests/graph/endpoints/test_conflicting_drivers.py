@@ -1,4 +1,7 @@
-"""Several simultaneous commanders: sequences of commands that contradict each other, and the report about them."""
+"""Several simultaneous commanders.
+
+The tests cover sequences of contradictory commands, and the report about them.
+"""
 
 from __future__ import annotations
 

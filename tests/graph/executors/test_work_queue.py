@@ -1,4 +1,7 @@
-"""The queue and the workers of an executor: which thread wakes when, and Ctrl-C at any point of a wait."""
+"""The queue and the workers of an executor.
+
+The tests cover which thread wakes when, and Ctrl-C at any point of a wait.
+"""
 
 from __future__ import annotations
 

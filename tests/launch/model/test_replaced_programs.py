@@ -1,4 +1,7 @@
-"""Programs that are replaced by nodes through entry points, from Linkwright and other packages."""
+"""Programs that nodes replace through entry points.
+
+The nodes are from Linkwright and from other packages.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Test files for launch_testing, run by ``launch_test`` and by pytest with the stand-ins only."""
+"""Test files for launch_testing, run with the stand-ins only.
+
+They run by ``launch_test`` and by pytest.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The wheels in `uv.lock`: each system and Python has one for every package of the extra ``learn``."""
+"""The wheels in `uv.lock`.
+
+Each system and Python has one for every package of the extra ``learn``.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Runs of the sandbox as on other systems: in a container, as an ordinary user, or without some features of the kernel.
+"""Runs of the sandbox as on other systems.
+
+These are a container, an ordinary user, and a kernel without some features.
 
 ``python situations.py NAME`` reads a request from standard input, disables the features that the named system lacks,
 and prints the outcome. It uses only the standard library, because an ordinary user may have no access to this Python.

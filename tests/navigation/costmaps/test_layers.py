@@ -1,4 +1,7 @@
-"""Layers of costmaps: inflation's formula, clearing and marking, maps, height levels, and denoising."""
+"""Layers of costmaps.
+
+The tests cover inflation's formula, clearing and marking, maps, height levels, and denoising.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A simulated robot that drives along a path in a costmap, without ROS; it has exactly the commanded velocity."""
+"""A simulated robot that drives along a path in a costmap, without ROS.
+
+It has exactly the commanded velocity.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The YAML files of maps: all of nav2's keys are read, and mistakes are reported with their position."""
+"""The YAML files of maps.
+
+All of nav2's keys are read, and mistakes are reported with their position.
+"""
 
 from __future__ import annotations
 

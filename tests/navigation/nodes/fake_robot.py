@@ -1,4 +1,7 @@
-"""A fake robot with a map and a laser for the nodes of navigation, on a graph with a stepped clock."""
+"""A fake robot with a map and a laser for navigation nodes.
+
+Its graph has a stepped clock.
+"""
 
 from __future__ import annotations
 

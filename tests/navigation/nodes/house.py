@@ -1,4 +1,7 @@
-"""mbot with its laser in the house, a path through all rooms, and the distances between a map and the house."""
+"""mbot with its laser in the house, and a path through all rooms.
+
+Functions compute the distances between a map and the house.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A robot in a room with walls that moves by ``/cmd_vel``, and publishes its pose and scans."""
+"""A robot in a room with walls that follows ``/cmd_vel``.
+
+It publishes its pose and scans.
+"""
 
 from __future__ import annotations
 

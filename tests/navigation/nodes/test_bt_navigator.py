@@ -1,4 +1,7 @@
-"""bt_navigator and waypoint_follower: navigation to and through poses, recoveries, feedback and rejections."""
+"""bt_navigator and waypoint_follower.
+
+The tests cover navigation to and through poses, recoveries, feedback and rejections.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Costmaps of nav2's servers on the graph: maps, scans, rolling windows, services, parameters."""
+"""Costmaps of nav2's servers on the graph.
+
+The tests cover maps, scans, rolling windows, services, parameters.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""planner_server and smoother_server on the graph: goals and errors, cancellation, preemption, services."""
+"""planner_server and smoother_server on the graph.
+
+The tests cover goals and errors, cancellation, preemption, services.
+"""
 
 from __future__ import annotations
 

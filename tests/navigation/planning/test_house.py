@@ -1,4 +1,7 @@
-"""The map of the house: plans that may cross unknown cells stay within its walls, and avoid its furniture."""
+"""The map of the house.
+
+Plans that may cross unknown cells stay within its walls, and avoid its furniture.
+"""
 
 from __future__ import annotations
 

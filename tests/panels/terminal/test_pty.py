@@ -1,4 +1,7 @@
-"""A program in a pseudoterminal: output, input, size, and the end of the program and its children."""
+"""A program in a pseudoterminal.
+
+The tests cover output, input, size, and the end of the program and its children.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""PointCloud2, LaserScan, DepthCloud and the displays of single numbers, from topics to pages."""
+"""Displays of clouds, scans and single numbers, from topics to pages.
+
+The tests cover PointCloud2, LaserScan and DepthCloud.
+"""
 
 from __future__ import annotations
 

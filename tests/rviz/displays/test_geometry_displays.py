@@ -1,4 +1,7 @@
-"""Pose, PoseArray, PoseWithCovariance, Odometry, Path, Polygon, Range, TwistStamped, AccelStamped and Wrench."""
+"""Displays of geometry messages.
+
+The tests cover poses, Odometry, Path, Polygon, Range, TwistStamped, AccelStamped and Wrench.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Displays of healthy sensors whose transforms arrive after their messages: the changes of their status."""
+"""Displays of healthy sensors whose transforms arrive after their messages.
+
+The tests check the changes of their status.
+"""
 
 from __future__ import annotations
 

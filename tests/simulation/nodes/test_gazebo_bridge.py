@@ -1,4 +1,7 @@
-"""parameter_bridge and image_bridge: conversion between topics whose names or types differ between gz and ROS."""
+"""parameter_bridge and image_bridge.
+
+They convert between topics whose names or types differ between gz and ROS.
+"""
 
 from __future__ import annotations
 

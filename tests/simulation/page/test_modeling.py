@@ -1,4 +1,7 @@
-"""Editing of a world in the page: messages of pages change the world's file and the simulation."""
+"""Editing of a world in the page.
+
+Messages of pages change the world's file and the simulation.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""An arm in a simulated world: it follows trajectories by position, velocity and effort commands."""
+"""An arm in a simulated world.
+
+It follows trajectories by position, velocity and effort commands.
+"""
 
 from __future__ import annotations
 

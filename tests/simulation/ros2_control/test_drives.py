@@ -1,4 +1,7 @@
-"""Drives in a simulated world: controllers turn motors, wheels roll, and odometry is compared with the truth."""
+"""Drives in a simulated world.
+
+Controllers turn motors, wheels roll, and odometry is compared with the truth.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The command file: the meaning of utterances with the built-in one, and the positions of mistakes in others."""
+"""The command file.
+
+The tests cover the meaning of utterances with the built-in one, and the positions of mistakes in others.
+"""
 
 from __future__ import annotations
 

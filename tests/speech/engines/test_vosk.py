@@ -1,4 +1,7 @@
-"""The engine vosk with a scripted fake recognizer, because tests cannot have a model of Vosk."""
+"""The engine vosk with a scripted fake recognizer.
+
+Tests cannot have a model of Vosk.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Networks in ONNX files: each layout, compared with direct calls of onnxruntime and a slow decoder."""
+"""Networks in ONNX files.
+
+Each layout is compared with direct calls of onnxruntime and with a slow decoder.
+"""
 
 from __future__ import annotations
 

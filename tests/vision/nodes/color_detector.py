@@ -1,4 +1,7 @@
-"""A detector for tests without a network or library: one box around all pixels of one color."""
+"""A detector for tests without a network or library.
+
+It returns one box around all pixels of one color.
+"""
 
 from __future__ import annotations
 

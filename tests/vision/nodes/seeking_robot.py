@@ -1,4 +1,7 @@
-"""mbot in an empty world with red balls, and the nodes that find them, in one thread and in lock-step."""
+"""mbot in an empty world with red balls, and the nodes that find them.
+
+All run in one thread and in lock-step.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""object_seeker with nav2: it sends goals to detected objects if this is enabled and nav2 runs."""
+"""object_seeker with nav2.
+
+It sends goals to detected objects if this is enabled and nav2 runs.
+"""
 
 from __future__ import annotations
 

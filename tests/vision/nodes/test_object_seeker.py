@@ -1,4 +1,7 @@
-"""mbot drives to a ball in a simulated world, in lock-step: the same test twice gives the same bits."""
+"""mbot drives to a ball in a simulated world, in lock-step.
+
+The same test twice gives the same bits.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Networks that learn, where PyTorch is installed: `make test-train` runs them (see CONTRIBUTING.md)."""
+"""Networks that learn, where PyTorch is installed.
+
+`make test-train` runs these tests (see CONTRIBUTING.md).
+"""
 
 from __future__ import annotations
 

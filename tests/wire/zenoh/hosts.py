@@ -1,4 +1,6 @@
-"""Hosts on one machine: network namespaces, connected by virtual cables, one of them through NAT.
+"""Hosts on one machine.
+
+They are network namespaces, connected by virtual cables, one of them through NAT.
 
     robot 192.168.7.2 -- gateway (NAT) -- cloud 10.99.7.1 -- desk 10.99.8.2
 

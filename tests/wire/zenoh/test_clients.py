@@ -1,4 +1,7 @@
-"""Clients of a router: they receive only the announcements that their own endpoints need, and the rest on request."""
+"""Clients of a router.
+
+They receive only the announcements that their own endpoints need, and the rest on request.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Hosts in several networks, joined as `docs/beyond-one-machine.md` says, with the files on that page."""
+"""Hosts in several networks, joined as `docs/beyond-one-machine.md` says.
+
+They use the files on that page.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Nodes of zenoh-ros2-sdk, another implementation of ROS 2's keys, tokens and hashes over Zenoh.
+"""Nodes of zenoh-ros2-sdk.
+
+It is another implementation of ROS 2's keys, tokens and hashes over Zenoh.
 
 The tests run where LINKWRIGHT_ZENOH_SDK_PYTHON names an interpreter with it; see ``make test-zenoh-sdk``.
 """
