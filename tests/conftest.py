@@ -46,7 +46,10 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Ignore modules of pages, and modules that are wholly marked, in `make test-base`: their imports would fail."""
+    """Ignore modules of pages, and wholly marked modules, in `make test-base`.
+
+    Their imports would fail.
+    """
     if "not extra" not in config.option.markexpr:
         return None
     if collection_path.name == "browser":
@@ -79,7 +82,10 @@ def fork_server() -> Iterator[ForkServer]:
 
 @pytest.fixture(autouse=True)
 def plain_environment(monkeypatch):
-    """Remove settings of workspace, color and language, and use a domain without nodes of other test runs."""
+    """Remove settings of workspace, color and language, and use a domain of this run.
+
+    Nodes of other test runs are in other domains.
+    """
     for name in ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH", "NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("LINKWRIGHT_LANG", "en")

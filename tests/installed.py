@@ -15,7 +15,9 @@ _CONSTRAINTS = REPOSITORY / ".build" / "constraints.txt"
 
 
 def install(folder: Path, *packages: str, extra: str = "all", project: Path = REPOSITORY) -> Path:
-    """Create an environment with the wheel and other packages, once for all workers of a test run.
+    """Create an environment with the wheel and other packages.
+
+    All workers of a test run share it.
 
     Args:
         folder: a folder that the workers share, for ``wheel/`` and ``environment/``.

@@ -17,7 +17,9 @@ UPGRADE = (
 
 
 async def request_and_reset(port: int, target: str, headers: str = "") -> None:
-    """Send three requests to a local port and reset the connection, after different numbers of turns of the event loop.
+    """Send three requests to a local port and reset the connection.
+
+    The resets come after different numbers of turns of the event loop.
 
     The server runs on the event loop of the caller.
     """

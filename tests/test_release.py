@@ -106,7 +106,10 @@ def test_changelog_has_section_of_current_version(release, notes):
 
 
 def listed() -> str:
-    """Return cyclonedx-py's list of components for an environment with Linkwright and a package from a folder."""
+    """Return cyclonedx-py's list of components for an environment.
+
+    It has Linkwright and a package from a folder.
+    """
     local = {"type": "distribution", "url": "file:///home/somebody/linkwright.whl"}
     website = {"type": "website", "url": "https://example.org"}
     components = [

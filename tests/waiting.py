@@ -44,7 +44,10 @@ async def eventually(condition: Callable[[], object], seconds: float = TIMEOUT_S
 
 
 def is_waiting(thread: threading.Thread) -> bool:
-    """Return whether a thread waits for another one (for an event, a condition, the work of an executor)."""
+    """Return whether a thread waits for another one.
+
+    It may wait for an event, a condition, or the work of an executor.
+    """
     frame = sys._current_frames().get(thread.ident or 0)
     if frame is None:
         return False

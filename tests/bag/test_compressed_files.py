@@ -21,7 +21,10 @@ PLUGINS = [StoragePlugin.MCAP, StoragePlugin.SQLITE3]
 
 
 def record_compressed(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length: int = 20) -> Path:
-    """Write a folder as `ros2 bag record --compression-mode` does, with messages of ``/a`` and ``/b`` in turn."""
+    """Write a folder as `ros2 bag record --compression-mode` does.
+
+    Messages of ``/a`` and ``/b`` alternate.
+    """
     writer = Writer(folder, version=8, storage_plugin=plugin)
     writer.set_compression(mode, CompressionFormat.ZSTD)
     with writer:

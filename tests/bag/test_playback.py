@@ -33,7 +33,10 @@ def make_transform(child: str) -> bytes:
 
 
 def write_recording(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
-    """Record 20 s: ``/a`` each second, ``/b`` each fourth, ``/tf`` twice a second, ``/tf_static`` at 0 and 9 s."""
+    """Write a recording of 20 s.
+
+    ``/a`` has a message each second, ``/b`` each fourth, ``/tf`` twice a second, and ``/tf_static`` at 0 and 9 s.
+    """
     path = folder / "bag"
     with BagWriter(path, storage, compression="storage" if compressed else "none") as writer:
         for name, kind, qos in (
@@ -136,7 +139,10 @@ def test_message_counts_per_interval_are_returned(tmp_path: Path, storage: str) 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> None:
-    """Also compare times before and after all messages, in long pauses, and at equal times of several messages."""
+    """Compare the state at many times with a reading of all messages.
+
+    The times are also before and after all messages, in long pauses, and at equal times of several messages.
+    """
     stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND_NS, 90 * SECOND_NS]
     topics = ("/a", "/b", "/tf", "/tf_static")
     with BagWriter(tmp_path / "bag", storage) as writer:

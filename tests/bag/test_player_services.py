@@ -17,7 +17,10 @@ Time = get_message("builtin_interfaces/msg/Time")
 
 
 class PlayerHarness:
-    """A recording of a message each second, a player, a subscription to its topic, and clients of its services."""
+    """A player of a recording, a subscription to its topic, and clients of its services.
+
+    The recording has a message each second.
+    """
 
     def __init__(self, graph: Graph, bag: BagReader, options: PlayOptions) -> None:
         self.graph = graph

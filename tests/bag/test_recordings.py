@@ -156,7 +156,10 @@ def test_single_file_recording_has_no_folder(tmp_path: Path) -> None:
 
 
 def write_parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
-    """Write files without metadata, each with three messages of a topic, starting a second after the previous file."""
+    """Write files without metadata, each with three messages of a topic.
+
+    Each file starts a second after the previous one.
+    """
     files = []
     for number, name in enumerate(names):
         with BagWriter(folder / f"part{number}", storage) as writer:

@@ -65,7 +65,10 @@ _GROUPED = """
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Add the content of the pages to the report of a failed test, because the failure may not be repeatable."""
+    """Add the content of the pages to the report of a failed test.
+
+    The failure may not be repeatable.
+    """
     report = yield
     browser = getattr(item, "funcargs", {}).get("browser")
     if report.when == "call" and report.failed and browser is not None:
@@ -146,14 +149,20 @@ Start = Callable[..., Program]
 
 @pytest.fixture
 def start(tmp_path: Path, fork_server: ForkServer) -> Iterator[Start]:
-    """Return a function that starts `linkwright WORDS... --no-open` and waits for the viewer's address."""
+    """Return a function that starts `linkwright WORDS... --no-open`.
+
+    It waits for the viewer's address.
+    """
     with program_starter(fork_server.start, tmp_path) as run:
         yield run
 
 
 @pytest.fixture
 def start_fresh(tmp_path: Path) -> Iterator[Start]:
-    """Return the same function with processes that import everything themselves, as users' processes do."""
+    """Return the same function with processes that import everything themselves.
+
+    Users' processes do so.
+    """
     with program_starter(start_process, tmp_path) as run:
         yield run
 
@@ -206,7 +215,10 @@ def live() -> Iterator[Callable[..., LiveViewer]]:
 
 @pytest.fixture
 def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
-    """Return a function that opens a program's page, by default at 1280x800, and waits for the robot."""
+    """Return a function that opens a program's page and waits for the robot.
+
+    The page has 1280x800 pixels by default.
+    """
     contexts = []
     errors: list[str] = []
 
@@ -238,7 +250,10 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
 
 @pytest.fixture
 def grouped_displays(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[LiveViewer, Page]:
-    """Return a viewer with a grid, and a group of axes and an unknown display, together with its page."""
+    """Return a viewer and its page.
+
+    The viewer has a grid, and a group of axes and an unknown display.
+    """
     viewer = live(configuration(_GROUPED))
     viewer.place("tip", 1.0, 0.0, 0.0)
     page = open_page(viewer, wait=False)

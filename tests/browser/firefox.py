@@ -160,7 +160,10 @@ class Firefox:
         wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=POLL_PERIOD_S)
 
     def press(self, *keys: str) -> None:
-        """Press keys one after another. WebDriver names them by a letter, or by a code such as ``\\ue014`` (right)."""
+        """Press keys one after another.
+
+        WebDriver names them by a letter, or by a code such as ``\ue014`` (right).
+        """
         actions = [{"type": action_type, "value": key} for key in keys for action_type in ("keyDown", "keyUp")]
         source = {"type": "key", "id": "keyboard", "actions": actions}
         self.call("input.performActions", context=self._tab, actions=[source])

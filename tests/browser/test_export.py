@@ -73,7 +73,10 @@ def drawn_visuals(page) -> dict:
 
 
 def assert_alike(first: dict, second: dict) -> None:
-    """Assert that two drawings are equal up to rounding, because joint positions are computed from transforms."""
+    """Assert that two drawings are equal up to rounding.
+
+    Joint positions are computed from transforms.
+    """
     assert first.keys() == second.keys()
     for name, shapes in first.items():
         for a, b in zip(shapes, second[name], strict=True):

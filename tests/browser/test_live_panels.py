@@ -33,7 +33,10 @@ GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid"
 
 @dataclass
 class Robot:
-    """Nodes that publish a current at 1 kHz and joints at 50 Hz, have parameters, log, and receive velocities."""
+    """Nodes that publish a current at 1 kHz and joints at 50 Hz.
+
+    They also have parameters, log, and receive velocities.
+    """
 
     live: LiveViewer
     velocities: list[tuple[float, float]] = field(default_factory=list)

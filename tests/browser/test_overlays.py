@@ -52,7 +52,10 @@ TELL = """() => {
 
 
 def find_overlaps(boxes: dict[str, list[float]]) -> list[str]:
-    """Return the pairs of boxes that overlap by more than an edge, and the boxes outside the scene."""
+    """Return the pairs of boxes that overlap by more than an edge.
+
+    Boxes outside the scene are returned, too.
+    """
     left, top, right, bottom = boxes.pop(".scene-box")
     overlaps = [
         f"{first} over {second}"

@@ -27,7 +27,10 @@ def _user_state(tmp_path, monkeypatch):
 
 
 def wait_for_panels(page, *names: str) -> None:
-    """Wait until exactly these panels are open, beside the scene and the panels that RViz does not have."""
+    """Wait until exactly these panels are open.
+
+    The scene and the panels that RViz does not have are always open.
+    """
     expected = sorted({*names, *LINKWRIGHT_PANELS})
     page.wait_for_function(
         """wanted => {

@@ -27,7 +27,10 @@ LaserScan = get_message("sensor_msgs/msg/LaserScan")
 
 
 def write_recording(path: Path, *, scans: bool) -> Path:
-    """Write a recording with raw and compressed images of 4x4 pixels, one of these truncated, with or without scans."""
+    """Write a recording with raw and compressed images of 4x4 pixels.
+
+    One of the images is truncated. Scans are optional.
+    """
     file = BytesIO()
     PIL.Image.new("RGB", (64, 64), (200, 30, 60)).save(file, "jpeg")
     raw = image("rgb8", 4, 4, bytes((200, 30, 60)) * 16)

@@ -35,7 +35,10 @@ SENSES = configuration(
 
 
 def make_noise_image(width: int, height: int) -> Any:
-    """Return an image of squares of random colors: hard to compress, also at the size of its panel."""
+    """Return an image of squares of random colors.
+
+    It is hard to compress, also at the size of its panel.
+    """
     message = make_image(width, height)
     squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE_PX, width // _SQUARE_PX, 3), np.uint8)
     message.data = squares.repeat(_SQUARE_PX, axis=0).repeat(_SQUARE_PX, axis=1).tobytes()
@@ -81,7 +84,10 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:
-        """Publish both topics, because a silent topic's last message is sent whole; return whether both are thinned."""
+        """Publish both topics, and return whether both are thinned.
+
+        Both are published because a silent topic's last message is sent whole.
+        """
         for topic, message in zip(("/cloud", "/image"), heavy_messages, strict=True):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"

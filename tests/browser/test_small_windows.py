@@ -59,7 +59,10 @@ RECTANGLE = """([selector, part, text]) => {
 
 
 def visible_box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:
-    """Return the box of the first visible element, or of the first with a part that contains a text."""
+    """Return the box of the first visible element.
+
+    With a text, the element has a part that contains the text.
+    """
     rectangle: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part_selector, text]).json_value()
     return rectangle
 

@@ -51,7 +51,10 @@ class Example:
 
 @pytest.fixture
 def example(tmp_path: Path) -> Example:
-    """Return a pull request that renames a link, lengthens a macro, and has hostile names and files."""
+    """Return a pull request that renames a link and lengthens a macro.
+
+    It has hostile names and files.
+    """
     repository = Repository(tmp_path / "repository")
     base = repository.commit(PACKAGE)
     repository.git("checkout", "--quiet", "-b", HOSTILE_BRANCH)

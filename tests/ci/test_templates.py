@@ -41,7 +41,10 @@ def test_action_files_have_valid_structure(path: Path) -> None:
 
 @pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.yml")), ids=lambda path: path.parent.name)
 def test_scripts_contain_no_expressions(path: Path) -> None:
-    """An expression is inserted into the script before a shell reads it, including any branch name."""
+    """No expression is inserted into a script.
+
+    It would be inserted before a shell reads the script, including any branch name.
+    """
     definition = load(path)
     steps = definition["runs"]["steps"] if "runs" in definition else definition.values()
     for step in steps:

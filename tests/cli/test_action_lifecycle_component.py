@@ -211,7 +211,10 @@ def test_component_load_and_unload_change_container(in_graph, capsys):
 
 
 class _ContainerProcess:
-    """A substitute for the process that `component standalone` starts, with its node in the graph."""
+    """A substitute for the process that `component standalone` starts.
+
+    Its node is in the graph.
+    """
 
     def __init__(self, deaf_to: set[int], status: int | None) -> None:
         self.returncode: int | None = None

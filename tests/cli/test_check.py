@@ -27,7 +27,9 @@ def test_check_prints_tree_of_valid_model(capsys):
 
 
 def test_checking_robot_imports_no_world_modules():
-    """Building the tables of their many elements and attributes takes longer than checking a robot.
+    """The check of a robot imports no modules of worlds.
+
+    Building their tables of elements and attributes takes longer than the check.
 
     The import of `importlib.metadata` takes as long, so `linkwright.loading.extensions` does not use it.
     """

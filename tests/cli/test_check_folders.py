@@ -586,7 +586,10 @@ def test_webots_plugin_file_is_not_a_robot(working_directory, capsys):
 
 
 def test_same_problem_in_several_files_is_reported_once(working_directory, capsys, monkeypatch):
-    """The problems are a package that two files need, and a mistake of a model that its world repeats."""
+    """A problem of several files is reported once.
+
+    The problems are a package that two files need, and a mistake of a model that its world repeats.
+    """
     (working_directory / "p" / "models" / "box").mkdir(parents=True)
     box = '<model name="box"><link name="l"><pose>0 0 0 0 0</pose></link></model>'
     (working_directory / "p" / "models" / "box" / "model.sdf").write_text(f'<sdf version="1.6">{box}</sdf>')

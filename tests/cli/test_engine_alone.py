@@ -37,7 +37,10 @@ def test_linkwright_requires_same_version_of_linkwright_core() -> None:
 
 @pytest.fixture
 def alone(monkeypatch):
-    """Simulate an installation of linkwright-core alone: modules that are None in this table cannot be imported."""
+    """Simulate an installation of linkwright-core alone.
+
+    Modules that are None in this table cannot be imported.
+    """
     for name in ("cli.workbench", "simulation", "viewer.notebook", "bag"):
         for loaded in [module for module in sys.modules if f"{module}.".startswith(f"linkwright.{name}.")]:
             monkeypatch.delitem(sys.modules, loaded)

@@ -84,7 +84,10 @@ ROBOT_MAKERS = [
 def measure_work(
     make: Callable[[int], str], count: int, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> tuple[int, int]:
-    """Return the number of function calls and printed characters of `check` for an input of a size."""
+    """Return the function calls and the printed characters of `check`.
+
+    The input has a given size.
+    """
     path = folder / f"{count}" / "r.xacro"
     path.parent.mkdir()
     path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{make(count)}</robot>')

@@ -14,7 +14,10 @@ MANIFEST = "<package format='3'><name>{name}</name><exec_depend>{needs}</exec_de
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    """Create a workspace with the package ``arm``, whose robot has arguments, and ``user``, which depends on it."""
+    """Create a workspace with the packages ``arm`` and ``user``.
+
+    The robot of ``arm`` has arguments, and ``user`` depends on ``arm``.
+    """
     for name, needs in (("arm", "xacro"), ("user", "arm")):
         folder = tmp_path / "src" / name
         folder.mkdir(parents=True)

@@ -200,7 +200,10 @@ def test_schema_meanings_and_units_are_translated(words: Recording) -> None:
 
 
 def assert_translated(diagnostics: Iterable[Diagnostic], words: Recording) -> None:
-    """Fail for a text that is not a phrase, and for a phrase or a part of one without a translation."""
+    """Fail for a text that is not a phrase, or has no translation.
+
+    The parts of a phrase need translations, too.
+    """
     for diagnostic in diagnostics:
         words.missing.clear()
         for text in (diagnostic.message, diagnostic.hint, *(note.message for note in diagnostic.notes)):

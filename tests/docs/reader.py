@@ -212,7 +212,10 @@ class Reader:
             self._check(self._first)
 
     def _try_again(self, terminal: Terminal) -> bool:
-        """Type a line again if it ended before the launched program was ready, and return whether that happened."""
+        """Type a line again if it ended before the launched program was ready.
+
+        Return whether that happened.
+        """
         is_repeated = terminal.is_free and self._page is not None and time.monotonic() < self._launch_time + TIMEOUT_S
         if is_repeated:
             terminal.type(terminal.line)
@@ -279,7 +282,10 @@ def write_block(block: Block, folder: Path) -> None:
 
 
 def _make_symmetric_elements(text: str) -> str:
-    """Return the elements that the reader must write by analogy: the right wheel and the back caster."""
+    """Return the elements that the reader must write by analogy.
+
+    These are the right wheel and the back caster.
+    """
     elements = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
     if "left_" in elements:
         return elements.replace("left", "right").replace("0.19", "-0.19")

@@ -33,7 +33,10 @@ def test_both_readmes_begin_with_same_commands() -> None:
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """Return a copy of the repository's tracked files, and the page, which takes a minute to build."""
+    """Return a copy of the repository's tracked files, and the page.
+
+    The page takes a minute to build.
+    """
     if not (REPOSITORY / PAGE).is_dir() or not (REPOSITORY / ".git").exists():
         pytest.skip("this checkout has no built page")
     folder = tmp_path / "checkout"
@@ -60,7 +63,9 @@ def write_program(path: Path, text: str) -> Path:
 
 @pytest.fixture
 def newcomer(tmp_path: Path) -> dict[str, str]:
-    """Return an environment with Python, an empty home, and a browser that only records the address.
+    """Return an environment with Python and an empty home.
+
+    Its browser only records the address.
 
     If uv exists, it replaces pip, because it has the wheels of the tests' own environment in its cache.
     """

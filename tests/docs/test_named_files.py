@@ -35,7 +35,10 @@ _MODULE = re.compile(r"linkwright(?:\.\w+)+")
 
 
 def named_paths(page: Path) -> Iterator[str]:
-    """Return the paths and modules in a page's inline code, without placeholders like NAME.py and results of make."""
+    """Return the paths and modules in a page's inline code.
+
+    Placeholders like NAME.py and results of make are left out.
+    """
     for words in _WORDS.findall(_FENCE.sub("", page.read_text(encoding="utf-8"))):
         for word in words.split():
             is_ignored = word.split("/")[0] in IGNORED or any(
@@ -60,7 +63,10 @@ def tracked_paths() -> list[Path]:
 
 @functools.cache
 def other_names() -> str:
-    """Return names that look like files or modules but are declared elsewhere: entry point groups, npm packages."""
+    """Return names that look like files or modules but are declared elsewhere.
+
+    These are entry point groups and npm packages.
+    """
     names = ("pyproject.toml", "core/pyproject.toml", "frontend/package.json")
     return "".join((REPOSITORY / name).read_text(encoding="utf-8") for name in names)
 

@@ -61,7 +61,10 @@ def build_site(settings: Path, site: Path) -> subprocess.CompletedProcess[str]:
 
 
 def build_small_site(folder: Path, **changed_pages: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
-    """Build a site of a few pages with our settings and some changed pages; return its folder and the result."""
+    """Build a site of a few pages, and return its folder and the result.
+
+    It uses Linkwright's settings and some changed pages.
+    """
     for name, text in {**PAGES, **{f"{name}.md": text for name, text in changed_pages.items()}}.items():
         (folder / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / "docs" / name).write_text(text, encoding="utf-8")

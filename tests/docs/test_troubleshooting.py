@@ -33,7 +33,10 @@ def test_both_languages_show_same_cases() -> None:
 
 
 def language_independent(output: str) -> list[str]:
-    """Return the language-independent part: codes, locations, excerpts with carets, the number of notes and hints."""
+    """Return the language-independent part of an output.
+
+    This part has codes, locations, excerpts with carets, and the number of notes and hints.
+    """
     output = re.sub(r"^(\d+) (?:errors?, |个错误，)(\d+) (?:warnings?|个警告)$", r"\1 \2", output, flags=re.MULTILINE)
     lines = [re.sub(r"^\S+(\[\w+\]).*", r"\1", line) for line in output.splitlines()]
     return [re.sub(r"^   = .*?( \(\S+\))?$", r"=\1", line) for line in lines]

@@ -150,7 +150,10 @@ async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) ->
 
 
 async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joined: Graph) -> None:
-    """The simulator publishes the time of its stamps, and the world's poses on a topic of transforms are not frames."""
+    """The simulator's stamps have no delay, and world poses are not frames.
+
+    The simulator publishes the time of its stamps, and the world's poses on a topic of transforms.
+    """
     simulator = joined.create_node("gazebo")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
     poses, frames = (simulator.create_publisher(TRANSFORMS, topic, 10) for topic in ("/world_poses", "/robot1/tf"))

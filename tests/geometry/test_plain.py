@@ -39,7 +39,10 @@ def collada_with_library(parts: str) -> str:
 
 
 def triangle_corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
-    """Return the sorted corners of all triangles in meters, each from its lowest corner; shape (n, 9)."""
+    """Return the sorted corners of all triangles in meters; shape (n, 9).
+
+    Each triangle begins with its lowest corner.
+    """
     vertices_by_mesh = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain

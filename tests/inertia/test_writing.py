@@ -24,7 +24,10 @@ XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 @pytest.fixture
 def write(tmp_path):
-    """Write the inertia of the cube to links of a description, and return the result and the new text."""
+    """Write the inertia of the cube to links of a description.
+
+    Return the result and the new text.
+    """
 
     def run(text, *links, name="r.urdf"):
         path = tmp_path / name

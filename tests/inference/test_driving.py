@@ -46,7 +46,10 @@ def motors(simulation: Simulation, drive: Drive) -> tuple[list[Motor], list[Moto
 
 
 def drive_straight(simulation: Simulation, sides: tuple[list[Motor], list[Motor]], left: float, right: float) -> None:
-    """Accelerate the wheels to velocities in rad/s within a second, slowly enough to avoid slip."""
+    """Accelerate the wheels to velocities in rad/s within a second.
+
+    This is slow enough to avoid slip.
+    """
     for hundredth in range(1, 101):
         for motor in sides[0]:
             motor.target = left * hundredth / 100

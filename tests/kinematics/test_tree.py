@@ -19,7 +19,10 @@ from tests.urdf.robots import chain_of_links, robot_text, robots
 
 
 def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
-    """Return the frame of a link in the root, by the definition: the product of all frames up to the root."""
+    """Return the frame of a link in the root, by the definition.
+
+    It is the product of all frames up to the root.
+    """
     if link == robot.root:
         return np.eye(4)
     joint = parent_joints(robot)[link]

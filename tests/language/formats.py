@@ -38,7 +38,10 @@ PARTS_PY = """def generate_launch_description():
 
 
 def make_packages(folder: Path) -> Path:
-    """Make two packages with launch files, programs and configurations, and return the folder of the first."""
+    """Make two packages, and return the folder of the first.
+
+    They have launch files, programs and configurations.
+    """
     files = {
         "lamp_bringup/package.xml": MANIFEST.format(
             name="lamp_bringup", about="Starts a lamp.", more="<exec_depend>lamp_nodes</exec_depend>"

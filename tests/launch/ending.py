@@ -17,7 +17,10 @@ Condition = Callable[[LaunchContext], object]
 
 
 def run_when(condition: Condition, *actions: Any) -> OpaqueFunction:
-    """Run actions when a condition holds, or after a minute, so that the test reports what is missing."""
+    """Run actions when a condition holds, or after a minute.
+
+    In the second case the test reports what is missing.
+    """
     limit = time.monotonic() + TIMEOUT_S
 
     def look(context: LaunchContext) -> list[Any]:

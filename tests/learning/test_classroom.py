@@ -86,7 +86,10 @@ def test_solution_of_number_step_is_the_number(workspace, capsys, tmp_path):
 
 @pytest.fixture
 def grown_course(tmp_path, long_course):
-    """Return the same course, in which each step writes a file, and lesson b another one at its start."""
+    """Return the same course, in which each step writes a file.
+
+    Lesson b writes another one at its start.
+    """
     for step in ("a/one", "a/two", "b/one"):
         lesson, name = step.split("/")
         folder = tmp_path / "long" / lesson / "solution" / name

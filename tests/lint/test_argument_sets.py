@@ -35,7 +35,10 @@ def generate_launch_description():
 
 @pytest.fixture
 def check(tmp_path, monkeypatch, capsys):
-    """Write files, check the folder, and return the code, severity, file, message and notes of each finding."""
+    """Write files, check the folder, and return the findings.
+
+    Each has its code, severity, file, message and notes.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(files, *words):

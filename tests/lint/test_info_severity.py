@@ -27,7 +27,10 @@ PLUGIN_ELEMENT = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_dr
 
 @pytest.fixture
 def severity_of(tmp_path):
-    """Return the severity of a rule's only finding about a robot with a link ``base`` and other elements."""
+    """Return the severity of a rule's only finding about a robot.
+
+    The robot has a link ``base`` and other elements.
+    """
 
     def check(code, inside):
         (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{inside}</robot>')

@@ -34,7 +34,10 @@ def generate_launch_description():
 def apply_safe_fixes(
     folder: Path, build_file: str, text: str, *, selected: tuple[str, ...] = ("LW822", "LW826")
 ) -> str:
-    """Return a build file after all safe fixes of the package, and check that no finding remains."""
+    """Return a build file after all safe fixes of the package.
+
+    No finding may remain.
+    """
     build_type = "ament_python" if build_file == "setup.py" else "ament_cmake"
     files = {
         "package.xml": MANIFEST.format(build_type=build_type),

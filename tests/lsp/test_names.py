@@ -119,7 +119,10 @@ async def test_hover_describes_links_joints_meshes_and_packages(editor, package)
 
 
 async def test_hover_of_link_uses_facts_of_its_own_file(package):
-    """Macros of several arms in one package give the same names to their links, as in xarm_description."""
+    """Macros of several arms in one package give the same names to their links.
+
+    xarm_description does so.
+    """
     arm = (
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="{0}"><link name="elbow"><inertial>'
         '<mass value="{1}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'

@@ -249,7 +249,10 @@ class TestNewDescription:
         assert list(harness.positions()) == ["a"]
 
     async def test_new_description_is_published_without_delay(self, harness, clock):
-        """Description, joint states and transforms of a saved file arrive without a tick of the clock."""
+        """A new description arrives without a tick of the clock.
+
+        So do joint states and transforms of a saved file.
+        """
         publisher = harness.robot_state_publisher(robot(joint("a")))
         harness.joint_state_publisher()
         await harness.graph.settle()

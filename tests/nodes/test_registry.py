@@ -23,7 +23,10 @@ class Blinker(SingleNode):
 
 @pytest.fixture
 def installed(tmp_path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NodeRegistry]:
-    """Return the executables with an installed package that adds two, one of which cannot be imported."""
+    """Return the executables with an installed package that adds two.
+
+    One of these cannot be imported.
+    """
     metadata = tmp_path / "my_robot-1.0.dist-info"
     metadata.mkdir()
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: my_robot\nVersion: 1.0\n")

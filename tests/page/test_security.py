@@ -372,7 +372,10 @@ async def test_connected_page_does_not_time_out(served, monkeypatch):
 
 
 async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, monkeypatch):
-    """The page's public files are in memory once, and their readers are dropped in favor of clients with the token."""
+    """Clients that read nothing use little memory.
+
+    The page's public files are in memory once, and their readers are dropped in favor of clients with the token.
+    """
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
     server = served.viewer._server.web
@@ -404,7 +407,10 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
 
 
 async def test_slow_download_of_page_does_not_time_out(served, tmp_path, monkeypatch):
-    """These files are fetched without the token, and a slow line takes longer than the limit for other clients."""
+    """A slow download of the page does not time out.
+
+    Its files are fetched without the token, and a slow line takes longer than the limit for other clients.
+    """
     monkeypatch.setattr("linkwright.page.access.FIRST_REQUEST_TIMEOUT_S", 0.1)
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (16 << 20))

@@ -92,7 +92,10 @@ class Watcher:
                 self.contents.append((self.now(), unpack_content(frame).fields))
 
     def _whole(self, data: bytes) -> bytes:
-        """Return the frame that a message contains or completes, or an empty one if pieces are missing."""
+        """Return the frame that a message contains or completes.
+
+        The frame is empty if pieces are missing.
+        """
         kind, _, offset, length = struct.unpack_from("<IIII", data)
         if kind != PIECE_KIND:
             return data
@@ -121,7 +124,10 @@ async def watching(url: str, *, answers: bool = True, busy: float = 0.0):
 
 
 async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int = 100_000) -> None:
-    """Publish the robot's transform with x = time at a rate, and a cloud and an image ten times a second."""
+    """Publish the robot's transform at a rate, with x = time.
+
+    A cloud and an image are published ten times a second.
+    """
     now = asyncio.get_running_loop().time
     node = world.graph.create_node("senses")
     clouds = node.create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)

@@ -20,7 +20,10 @@ def move_arm(world: World, x: float) -> int:
 
 
 async def publish_positions(world: World) -> list[float]:
-    """Publish five positions of a frame, one each second, and return the times halfway between, in seconds."""
+    """Publish five positions of a frame, one each second.
+
+    Return the times halfway between, in seconds.
+    """
     times_between = []
     for x in range(5):
         move_arm(world, float(x))

@@ -21,7 +21,10 @@ SECOND_NS = 1_000_000_000
 
 
 def recorded(folder: Path) -> Path:
-    """Record ten seconds: a point each second, and a frame with x = the seconds since the start."""
+    """Record ten seconds with a point each second.
+
+    The x of a frame is the seconds since the start.
+    """
     pytest.importorskip("rosbags", reason="rosbags has no wheel for Python 3.15")
     path = folder / "drive"
     with BagWriter(path) as writer:
@@ -37,7 +40,10 @@ def recorded(folder: Path) -> Path:
 
 @asynccontextmanager
 async def open_recording(folder: Path, **other: str) -> AsyncIterator[World]:
-    """Show the recording in a viewer, in the recording's time, optionally with words of its files replaced."""
+    """Show the recording in a viewer, in the recording's time.
+
+    Words of its files can be replaced.
+    """
     path = recorded(folder)
     for file in path.iterdir():
         for word, instead in other.items():

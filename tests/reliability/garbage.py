@@ -37,7 +37,10 @@ def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> 
 
 
 def bodies(lottery: random.Random) -> list[bytes]:
-    """Return bytes that are rarely a valid message, each with an encapsulation header that Cyclone accepts."""
+    """Return bytes that are rarely a valid message.
+
+    Each has an encapsulation header that Cyclone accepts.
+    """
     packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUND_COUNT)]
     packets += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
     packets += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
@@ -46,7 +49,10 @@ def bodies(lottery: random.Random) -> list[bytes]:
 
 
 def announcements(participant: bytes) -> list[bytes]:
-    """Return possible announcements of a participant in the layout of Humble, with impossible node names."""
+    """Return possible announcements of a participant in the layout of Humble.
+
+    The node names are impossible.
+    """
 
     def name(value: bytes) -> bytes:
         return struct.pack("<I", len(value) + 1) + value + bytes(4 - len(value) % 4)

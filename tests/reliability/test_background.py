@@ -87,7 +87,10 @@ def test_background_user_node_ends_on_sigint(background: Machine) -> None:
 
 
 def test_process_in_background_launch_can_be_interrupted_alone(background: Machine) -> None:
-    """The process has the system's default for SIGINT, as in a terminal, however the launch was started."""
+    """A process of a background launch can be interrupted.
+
+    It has the system's default for SIGINT, as in a terminal, however the launch was started.
+    """
     path = background.write("speaker.py", program(SPEAKING))
     action = f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], output='screen')"
     running = background.launch(background.write("a.launch.py", launch_file(action)))

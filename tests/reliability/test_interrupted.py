@@ -76,7 +76,10 @@ def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Mach
 @pytest.mark.slow
 @pytest.mark.parametrize("delay", [0.1, 0.2, 0.35, 0.6, 1.2])
 def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) -> None:
-    """Type Ctrl-C in the terminal of a launch, and in the terminal of a recording, which reads keys."""
+    """Ctrl-C restores the settings of a terminal.
+
+    It is typed in the terminal of a launch, and in the terminal of a recording, which reads keys.
+    """
     path = machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
     bag = machine.folder / f"bag_{delay}"
     for words in (["launch", str(path)], ["bag", "record", "-a", "-o", str(bag)]):

@@ -105,7 +105,10 @@ def test_late_subscriber_receives_description_and_static_transforms(machine: Mac
 
 
 def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
-    """With LINKWRIGHT_DDS=0, a process works, has no socket for other processes, and discovers no nodes."""
+    """A process with LINKWRIGHT_DDS=0 works in isolation.
+
+    It has no socket for other processes, and discovers no nodes.
+    """
     path = machine.write(
         "a.launch.py",
         launch_file(
@@ -127,7 +130,10 @@ def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
 
 
 def test_launch_leaves_no_threads_or_processes(machine: Machine) -> None:
-    """The threads and processes of a started launch, seen from outside after it was interrupted."""
+    """An interrupted launch leaves no threads or processes.
+
+    They are seen from outside.
+    """
     program = machine.write("p.py", "import time\nprint('up', flush=True)\ntime.sleep(60)\n")
     path = machine.write(
         "a.launch.py",

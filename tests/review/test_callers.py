@@ -32,7 +32,10 @@ CALLER = "from arm.plans import load, walk\nfrom . import plans\n\n\ndef main():
 
 @pytest.fixture
 def calls(repository, compare):
-    """Review a replacement in the module, and return the breaking lines of the caller with their places."""
+    """Review a replacement in the module.
+
+    Return the breaking lines of the caller with their places.
+    """
 
     def run(old, new, caller=CALLER, path="arm/arm/node.py", module="arm/arm/plans.py"):
         assert old in MODULE

@@ -15,7 +15,10 @@ PATH = "arm/launch/arm.launch"
 
 @pytest.fixture
 def changes_of(repository, compare):
-    """Review two contents of a launch file, and return the sentences of all changes and of the breaking ones."""
+    """Review two contents of a launch file.
+
+    Return the sentences of all changes and of the breaking ones.
+    """
 
     def run(old: str, new: str, **files: str):
         other_files = {f"arm/{name}": text for name, text in files.items()}

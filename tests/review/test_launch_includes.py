@@ -28,7 +28,10 @@ CAMERA_STOPS = "by default, 'arm/camera.py' does not start any more"
 
 @pytest.fixture
 def reasons(repository, compare):
-    """Review a replacement in a launch file that includes others; return the changes with their reasons."""
+    """Review a replacement in a launch file that includes others.
+
+    Return the changes with their reasons.
+    """
 
     def run(old: str, new: str):
         assert old in FILE

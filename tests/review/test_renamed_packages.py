@@ -38,7 +38,10 @@ FILES = {
 
 
 def rename_package_files(new_folder: str, new_name: str, **replacements: str) -> dict[str, str | None]:
-    """Return the files of a commit that moves the package, with a new name in all texts but that of the topic."""
+    """Return the files of a commit that moves the package.
+
+    All texts but that of the topic have the new name.
+    """
     files: dict[str, str | None] = {}
     for path, text in FILES.items():
         new_text = text.replace("arm_tools", new_name).replace(f"{new_name}/cmd", "arm_tools/cmd")

@@ -28,7 +28,10 @@ HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *
 
 @pytest.fixture
 def changed(package):
-    """Return a repository whose last commit changes a macro of two robots, and renames a link of one."""
+    """Return a repository whose last commit changes a macro of two robots.
+
+    It also renames a link of one.
+    """
     package.commit({"arm_description/urdf/other.urdf.xacro": OTHER})
     package.commit(
         {

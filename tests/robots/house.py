@@ -67,7 +67,10 @@ class House(SteppedSimulation):
         return options
 
     def advance_and_watch(self, seconds: float) -> None:
-        """Advance the time, and record the contacts of mbot's body and wheels except with the ground."""
+        """Advance the time, and record the contacts of mbot's body and wheels.
+
+        Contacts with the ground are left out.
+        """
         for _ in range(round(seconds / STEP_S)):
             self.advance(STEP_S)
             model, data = self.simulation.model, self.simulation.data

@@ -130,7 +130,10 @@ def height(robot: Robot, link: str) -> float:
 
 
 def extents(robot: Robot) -> dict[str, tuple[float, float]]:
-    """Return the lowest and the highest point of each link's collision above the ground, in meters."""
+    """Return the lowest and the highest point of each link's collision.
+
+    They are above the ground, in meters.
+    """
     extents_by_link = {}
     for link in robot.links.values():
         for collision in link.collisions:

@@ -76,7 +76,10 @@ def test_robot_start_area_is_free(path: Path) -> None:
 
 
 def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[float, ...]]]:
-    """Return the boxes of a world with which the robot can collide: name, x, y, yaw and size in meters and radians."""
+    """Return the boxes of a world with which the robot can collide.
+
+    Each has a name, x, y, yaw and size in meters and radians.
+    """
     for model in ET.parse(path).getroot().iter("model"):
         for collision in model.iter("collision"):
             text = collision.findtext("geometry/box/size")

@@ -317,7 +317,10 @@ def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
 
 @pytest.mark.parametrize("name", ["boxed", "box_steel", "old_box"])
 def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
-    """Gazebo has many models, so a name that shares a word with a built-in model may be correct."""
+    """A model name that shares a word with a built-in model may be correct.
+
+    Gazebo has many models.
+    """
     write_files(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     finding = finder.file(f"model://{name}", tmp_path)
@@ -399,7 +402,10 @@ def test_file_uri_with_wrong_case_suggests_file(tmp_path):
 
 
 def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
-    """If each of thirty models includes the next one twice, the world has a thousand million models."""
+    """The number of included models is limited.
+
+    If each of thirty models includes the next one twice, the world has a thousand million models.
+    """
     monkeypatch.setattr("linkwright.sdf.includes._MAX_MODELS", 500)
     two_includes = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
     files = {

@@ -47,7 +47,10 @@ def write_and_read(entity):
 
 
 def check_round_trip(kind, make):
-    """Check that any object of a class, inside a model or world, is equal after writing and reading."""
+    """Check that any object of a class is equal after writing and reading.
+
+    The object is inside a model or world.
+    """
 
     @settings(deadline=None, max_examples=15, suppress_health_check=list(HealthCheck))
     @given(element=objects(kind))

@@ -40,7 +40,10 @@ def write_files(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def examine_world_in(folder: Path, elements: str, **environment: str) -> WorldDescription:
-    """Examine a world in a folder that includes files of the folder, which is also the home folder."""
+    """Examine a world in a folder that includes files of the folder.
+
+    The folder is also the home folder.
+    """
     path = folder / "w.world"
     path.write_text(f'<sdf version="1.9"><world name="w">{elements}</world></sdf>', encoding="utf-8")
     return examine_world(path, environment={"HOME": str(folder), **environment})

@@ -155,7 +155,10 @@ def test_program_folders_are_on_path_once(tmp_path: Path, start: str) -> None:
 
 
 def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
-    """Run a command of sh in Linkwright's shell in its own session, so that both can receive Ctrl-C."""
+    """Run a command of sh in Linkwright's shell.
+
+    It runs in its own session, so that both can receive Ctrl-C.
+    """
     return subprocess.Popen(
         [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
         stdout=subprocess.PIPE,

@@ -28,7 +28,10 @@ GAINS = "{node}: {{ros__parameters: {{pid_gains: {{{joint}: {{p: 40.0, d: 1.0}}}
 
 
 def finger_link(name: str, plugin_text: str = "", effort: float = 5.0) -> str:
-    """Return a finger whose joint turns about the vertical axis, so that gravity does not move it."""
+    """Return a finger whose joint turns about the vertical axis.
+
+    Gravity does not move it.
+    """
     return f"""
   <link name="{name}"><inertial><origin xyz="0.1 0 0"/><mass value="0.1"/>
     <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial></link>

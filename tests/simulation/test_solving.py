@@ -16,7 +16,10 @@ CHECK_PERIOD = 20 * NANOSECONDS_PER_SECOND // 1000
 
 
 def make_driving_robots(*extra_models: str, robots: int = ROBOT_COUNT) -> Simulation:
-    """Return robots side by side that drive straight, each a little faster than the previous one."""
+    """Return robots side by side that drive straight.
+
+    Each is a little faster than the previous one.
+    """
     robot_models = [
         mbot(f"0 {number} 0.11 0 0 0").replace('name="mbot"', f'name="mbot{number}"', 1) for number in range(robots)
     ]

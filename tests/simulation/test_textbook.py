@@ -137,7 +137,10 @@ def test_robot_at_rest_does_not_drift():
 
 
 class Driver:
-    """A driver that turns mbot's wheels 100 times a second, as a node would, with 1 m/s2 at the rims."""
+    """A driver that turns mbot's wheels 100 times a second, as a node would.
+
+    The wheels accelerate with 1 m/s2 at the rims.
+    """
 
     def __init__(self, forward: float, yaw_rate: float) -> None:
         self.simulation: Simulation = make_simulation(GROUND, mbot())

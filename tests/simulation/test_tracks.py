@@ -105,7 +105,10 @@ def tank_model(extra: str = "", tracks: str = "<left_track><link>left</link></le
 
 
 async def drive(server, graph, forward: float, turning: float, seconds: float) -> None:
-    """Command a velocity, and advance the time in steps, between which the tracks get their commands."""
+    """Command a velocity, and advance the time in steps.
+
+    The tracks get their commands between the steps.
+    """
     twist = get_message("geometry_msgs/msg/Twist")()
     twist.linear.x, twist.angular.z = forward, turning
     node = graph.create_node("driver")

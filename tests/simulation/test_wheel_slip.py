@@ -54,7 +54,10 @@ def pushing_plugin(force: str) -> str:
 
 
 async def measure_velocity(*parts: str, seconds: float = 2.0) -> tuple[float, float]:
-    """Return the velocity of the wheel forward and to the left, relative to the speed of its surface."""
+    """Return the velocity of the wheel forward and to the left.
+
+    It is relative to the speed of the wheel's surface.
+    """
     async with running_server(GROUND, *parts) as (server, _, log):
         server.advance(round(seconds * SECOND_NS))
         x, y, _ = server.simulation.link_velocity("unicycle::up")[0]

@@ -82,7 +82,10 @@ def say(
 
 
 def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
-    """Return three simultaneous speakers with pauses between their words, at an effective value of 1."""
+    """Return three simultaneous speakers with pauses between their words.
+
+    The effective value is 1.
+    """
     count = int(seconds * RATE)
     total = np.zeros(count)
     sounds = [phone for phone in _PHONES if phone != "."]

@@ -19,7 +19,10 @@ BASE = {"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"}
 
 
 def run_assignments(python=sys.executable, command=(PROGRAM,), **variables):
-    """Return the result of each assignment: an AssertionError's text, another error's name, or type and values."""
+    """Return the result of each assignment.
+
+    It is an AssertionError's text, another error's name, or type and values.
+    """
     environment = {**BASE, **variables} if python == PYTHON else process.environment({**BASE, **variables})
     result = subprocess.run(
         [python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120

@@ -39,7 +39,10 @@ def package(tmp_path: Path) -> Path:
 
 
 def run_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str]:
-    """Return the status and output of ``python -m pytest``, without the settings of Linkwright's shell."""
+    """Return the status and output of ``python -m pytest``.
+
+    The settings of Linkwright's shell are removed.
+    """
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "LINKWRIGHT_SITE")}
     result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "-p", "no:asyncio", *words],

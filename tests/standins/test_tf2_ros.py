@@ -128,7 +128,10 @@ class TestTopics:
         assert threading.active_count() == before - 1
 
     def test_lookup_waits_in_callback_of_same_node(self, node):
-        """The listener's callbacks are in a reentrant group, so that a second thread processes them meanwhile."""
+        """The listener's callbacks are in a reentrant group.
+
+        A second thread processes them during the wait.
+        """
         buffer, transforms = Buffer(), []
         TransformListener(buffer, node)
         broadcaster = TransformBroadcaster(node)

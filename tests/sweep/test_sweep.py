@@ -26,7 +26,10 @@ def mixed(world, n):
 
 
 def make_reverse_runner(scenario, should_stop=None):
-    """Return a runner in this process that starts with the last row, and is interrupted before a row."""
+    """Return a runner in this process that starts with the last row.
+
+    It is interrupted before a row.
+    """
 
     def run(runs, report):
         for planned_run in reversed(runs):

@@ -37,7 +37,10 @@ WATCHING = ("add_reader", "add_signal_handler", "add_writer", "create_unix_conne
 
 
 def windows() -> None:
-    """Remove the features that Windows lacks, after the standard library has imported modules that need them here."""
+    """Remove the features that Windows lacks.
+
+    The standard library has already imported modules that need them here.
+    """
     import asyncio
     import ctypes.util  # noqa: F401 - looks at the system when it is imported
     import importlib.abc

@@ -50,7 +50,10 @@ limits = st.builds(
 
 @st.composite
 def robots(draw, max_links: int = 8) -> Robot:
-    """Generate a robot of version 1.1 with all kinds of joints, mimic chains, shapes and materials."""
+    """Generate a robot of version 1.1.
+
+    It has all kinds of joints, mimic chains, shapes and materials.
+    """
     link_names = draw(st.lists(names, min_size=1, max_size=max_links, unique=True).filter(all))
     materials = {
         name: Material(name, draw(st.none() | colors), draw(st.none() | names))

@@ -124,7 +124,10 @@ class TestLenience:
 
 
 class TestTruncation:
-    """After a bad part of a link, later parts are lost, in the order inertial, visuals, collisions."""
+    """After a bad part of a link, later parts are lost.
+
+    The order is inertial, visuals, collisions.
+    """
 
     GOOD_VISUAL, GOOD_COLLISION = f"<visual>{BOX}</visual>", f"<collision>{BOX}</collision>"
     INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'

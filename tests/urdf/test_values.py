@@ -12,7 +12,10 @@ from linkwright.urdf.values import looks_like_degrees, number, number_hint, numb
 
 
 def stream_reads(text: str) -> bool:
-    """Return whether a C++ stream reads a double from the whole text, character by character as num_get does."""
+    """Return whether a C++ stream reads a double from the whole text.
+
+    It reads character by character, as num_get does.
+    """
     text = text.lstrip(" \t\n\v\f\r")
     position = 0
 

@@ -76,7 +76,10 @@ def header(first: float = 0.0, second: float = 0.0) -> bytes:
 
 
 def depth_message(values, packing: str = "png", frame: str = "base"):
-    """Return a `compressedDepth` message of depths: whole millimeters (uint16), or up to 10 meters (float)."""
+    """Return a `compressedDepth` message of depths.
+
+    They are integer millimeters (uint16), or up to 10 meters (float).
+    """
     values = np.asarray(values)
     scale = header()
     encoding = "16UC1"

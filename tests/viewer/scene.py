@@ -184,7 +184,10 @@ class Client:
 
 @asynccontextmanager
 async def page(viewer: Viewer, options: str = "") -> AsyncIterator[Client]:
-    """Open a connected page, with `options` appended to its address; do not wait long for its end."""
+    """Open a connected page, with `options` appended to its address.
+
+    Its end is not waited for long.
+    """
     address = viewer.url.replace("/?", "/ws?") + options
     close_timeout = aiohttp.ClientWSTimeout(ws_close=1.0)
     async with aiohttp.ClientSession() as session, session.ws_connect(address, timeout=close_timeout) as socket:

@@ -56,7 +56,10 @@ def recorded(path: Path, lift_positions: Sequence[float], transforms: bool = Fal
 
 
 class Shown:
-    """A published recording, and the last positions of the links: x, y, z in the parent link, in meters."""
+    """A published recording, and the last positions of the links.
+
+    Positions are x, y, z in the parent link, in meters.
+    """
 
     def __init__(self, bag: BagReader) -> None:
         self.graph = Graph()

@@ -96,7 +96,10 @@ def test_fixed_frame_is_found_in_late_transforms(tmp_path: Path, storage: str) -
 
 
 def test_first_namespaced_robot_with_description_is_shown(tmp_path: Path) -> None:
-    """The robots' frames have the same names, so the data of the other robots is shown, but at wrong poses."""
+    """The first robot with a description is shown.
+
+    The robots' frames have the same names, so the other robots' data is shown at wrong poses.
+    """
     with BagWriter(tmp_path / "bag") as writer:
         for number in range(3):
             writer.add_topic(f"/robot{number}/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])

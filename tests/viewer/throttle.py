@@ -13,7 +13,10 @@ _BUFFER_BYTES = 8192
 
 @asynccontextmanager
 async def slow_line(url: str, rate: float) -> AsyncIterator[str]:
-    """Return the address of a proxy for a server, which limits the bytes per second from the server."""
+    """Return the address of a proxy for a server.
+
+    The proxy limits the bytes per second from the server.
+    """
     address = urlsplit(url)
     tasks: set[asyncio.Task] = set()
 

@@ -63,7 +63,10 @@ class FunctionFiles:
 async def _until(
     socket: aiohttp.ClientWebSocketResponse, is_last: Callable[[str, dict[str, Any]], bool], *kinds: str
 ) -> None:
-    """Receive until messages of all kinds have arrived, the last of them one that `is_last` accepts."""
+    """Receive until messages of all kinds have arrived.
+
+    The last of them is one that `is_last` accepts.
+    """
     missing = set(kinds)
     async for message in socket:
         text = message.type is aiohttp.WSMsgType.TEXT

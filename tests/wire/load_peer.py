@@ -62,7 +62,10 @@ class LoadPeer(Node):
         return self._received_count
 
     def count_correct_calls(self, server: str, count: int, tag: str) -> int:
-        """Make many calls to four kinds of services, several at a time, and return the number of correct responses."""
+        """Make many calls to four kinds of services, several at a time.
+
+        Return the number of correct responses.
+        """
         service_types = {"flip": SetBool, "basic": BasicTypes, "camera": SetCameraInfo, "get_parameters": GetParameters}
         clients = [
             self.create_client(service_type, f"/{server}/{name}") for name, service_type in service_types.items()

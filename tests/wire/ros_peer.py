@@ -150,7 +150,10 @@ class RosPeer:
         return [node for nodes in self.nodes_by_participant.values() for node in nodes]
 
     def remote_endpoints(self) -> dict[str, Any]:
-        """Return the remote endpoints by key: topic, type and USER_DATA in DDS, and whether it is a writer."""
+        """Return the remote endpoints by key.
+
+        Each has the topic, type and USER_DATA in DDS, and whether it is a writer.
+        """
         for reader, writes in ((self.publications, True), (self.subscriptions, False)):
             for sample in reader.take(500):
                 if sample.sample_info.instance_state != 16:

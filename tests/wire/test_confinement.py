@@ -25,7 +25,10 @@ GROUP = "0xefff0001"
 
 
 def memberships() -> set[str]:
-    """Return the addresses that are the only source of the announcement group on their interface."""
+    """Return the addresses that are the only source of their interface's group.
+
+    The group is that of the announcements.
+    """
     rows = [line.split() for line in Path("/proc/self/net/mcfilter").read_text().splitlines()[1:]]
     sources = [source for _, _, group, source, included, _ in rows if group == GROUP and int(included)]
     return {socket.inet_ntoa(int(source, 16).to_bytes(4, "big")) for source in sources}

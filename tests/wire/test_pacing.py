@@ -169,7 +169,10 @@ def test_closed_writer_sends_nothing():
 
 
 def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
-    """The test treats Cyclone's reader as a reader of Fast DDS, and listens on a socket in its place."""
+    """An image is sent packet by packet.
+
+    The test treats Cyclone's reader as a reader of Fast DDS, and listens on a socket in its place.
+    """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
         listening.bind(("127.0.0.1", 0))
         listening.settimeout(60)

@@ -26,7 +26,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 @pytest.fixture
 def peers(programs):
-    """Return a function that starts the program on a side, with the side's name as the node's name."""
+    """Return a function that starts the program on a side.
+
+    The side's name is the node's name.
+    """
 
     def start(side):
         if side == "theirs":

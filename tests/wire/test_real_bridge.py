@@ -63,7 +63,10 @@ def bridge():
 
 @pytest.fixture
 def peer(programs):
-    """Return a function that starts the program on a side, with the side's name as the node's name."""
+    """Return a function that starts the program on a side.
+
+    The side's name is the node's name.
+    """
 
     def start(program, side):
         arguments = []

@@ -35,7 +35,10 @@ pytestmark = [
 
 @pytest.fixture(scope="module", params=["11"])
 def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
-    """Return a learner's workspace at the end of lesson 11, or of the lesson that the test names."""
+    """Return a learner's workspace at the end of lesson 11.
+
+    A test may name another lesson.
+    """
     folder = tmp_path_factory.mktemp("workspace")
     finish_lessons(
         [lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder
@@ -219,7 +222,10 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, start_
             command_time = -inf
 
             def is_driving():
-                """Repeat the command, because not all nodes may know each other yet when the first one comes."""
+                """Return whether the robot drives, and repeat the command.
+
+                Not all nodes may know each other yet when the first one comes.
+                """
                 nonlocal command_time
                 if time.monotonic() > command_time + 4.0:
                     commands.publish(String(data="去红球那里"))

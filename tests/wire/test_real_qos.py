@@ -49,7 +49,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 @pytest.fixture
 def peers(programs, monkeypatch):
-    """Return a function that starts the program on a side, with the side's name as the node's name."""
+    """Return a function that starts the program on a side.
+
+    The side's name is the node's name.
+    """
     monkeypatch.setenv("ROS_DISTRO", "jazzy")  # rclpy's module of events has had its name since Iron
 
     def start(side):
@@ -127,7 +130,10 @@ def test_best_available_qos_always_matches(peers, publisher_side, subscriber_sid
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscriber_side):
-    """A deadline begins with the first message, and is not missed while messages arrive in time."""
+    """A missed deadline is reported on both sides.
+
+    A deadline begins with the first message, and is not missed while messages arrive in time.
+    """
     publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     for topic in ("/topic", "/silent"):
         publishes.ask("publisher", topic, {"deadline": 2.0})

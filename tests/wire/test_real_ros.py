@@ -87,7 +87,10 @@ def test_domains_are_isolated(processes, real_node, domain):
 
 
 def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node):
-    """The node also sees the last service, which Fast DDS announces some time after the first topic."""
+    """A late node sees everything after its wait.
+
+    It also sees the last service, which Fast DDS announces some time after the first topic.
+    """
     real_node()
     process = processes("ours")
     assert process.transport.wait_for_discovery(60)
@@ -156,7 +159,10 @@ def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node
 
 
 def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
-    """Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image."""
+    """Images that are replaced in transit do not stop the reader.
+
+    Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image.
+    """
     process = processes("ours")
     real = real_node()
     publisher = process.node.create_publisher(Image, "/images_to_ros", 1)

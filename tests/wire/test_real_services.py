@@ -77,7 +77,10 @@ def test_thousand_calls_from_real_client_get_their_own_responses(processes, real
 
 
 def test_first_call_of_first_real_node_is_answered(processes, real_node):
-    """The real node calls as soon as it has read Cyclone's announcement, before Linkwright has discovered it."""
+    """The first call of the first real node is answered.
+
+    The node calls as soon as it has read Cyclone's announcement, before Linkwright has discovered it.
+    """
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     for attempt in range(3):

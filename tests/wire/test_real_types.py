@@ -29,7 +29,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 @pytest.fixture
 def peers(programs, monkeypatch):
-    """Return a function that starts the program on a side, with the side's name as the node's name."""
+    """Return a function that starts the program on a side.
+
+    The side's name is the node's name.
+    """
     monkeypatch.setenv("ROS_DISTRO", "jazzy")  # all later distributions have the same form of types so far
 
     def start(side):

@@ -67,7 +67,10 @@ OWN_PEER = peer_settings("127.0.0.1")
 
 
 def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
-    """A node of Fast DDS that is limited to this machine ignores announcements of other machines."""
+    """Subnet settings include the own machine.
+
+    A node of Fast DDS that is limited to this machine ignores announcements of other machines.
+    """
     settings = configuration_elements(
         read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"})
     )
@@ -83,7 +86,10 @@ def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
 
 
 def test_localhost_range_equals_own_machine():
-    """Humble's rmw_cyclonedds then uses the loopback interface, and Jazzy's uses the one that Cyclone chooses."""
+    """The range of localhost equals the own machine.
+
+    Humble's rmw_cyclonedds then uses the loopback interface, and Jazzy's uses the one that Cyclone chooses.
+    """
     machine = read_settings({}).configurations
     assert read_settings({"ROS_LOCALHOST_ONLY": "1"}).configurations == machine
     assert read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}).configurations == machine

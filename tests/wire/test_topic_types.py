@@ -92,7 +92,10 @@ COMBINED_PROGRAM = """
 
 
 def run_program(program: str) -> str:
-    """Run a program that must end well although freed memory is overwritten, and return its output."""
+    """Run a program, and return its output.
+
+    It must end well although freed memory is overwritten.
+    """
     result = subprocess.run(
         [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(program)],
         capture_output=True,

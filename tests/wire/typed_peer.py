@@ -122,7 +122,10 @@ class TypedPeer(Node):
         ActionServer(self, action_type, _topic(name), execute)
 
     def send_goal(self, name: str) -> list[Any]:
-        """Send a goal with the values of seed 3, and return feedback, result, and the expected values of all three."""
+        """Send a goal with the values of seed 3.
+
+        Return feedback, result, and the expected values of all three.
+        """
         action_type = load_interface(name)
         client = ActionClient(self, action_type, _topic(name))
         assert client.wait_for_server(TIMEOUT_S)

@@ -49,7 +49,10 @@ def to_json_value(value: Any) -> Any:
 
 
 def load_interface(name: str) -> Any:
-    """Return the class of ``package/msg/Name``, ``package/srv/Name`` or ``package/action/Name``."""
+    """Return the class of an interface.
+
+    Its name is ``package/msg/Name``, ``package/srv/Name`` or ``package/action/Name``.
+    """
     package, folder, type_name = name.split("/")
     return getattr(importlib.import_module(f"{package}.{folder}"), type_name)
 

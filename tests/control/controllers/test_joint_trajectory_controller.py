@@ -28,7 +28,10 @@ POSITION_PARAMETERS = {
 
 
 class Arm:
-    """A controller on a test bench, with hardware that follows its commands at once, except for stuck joints."""
+    """A controller on a test bench, with hardware that follows its commands.
+
+    It follows them at once, except for stuck joints.
+    """
 
     def __init__(self, bench: Any, **parameters: Any) -> None:
         self.bench = bench

@@ -20,7 +20,10 @@ SUCCEEDED = 4
 
 
 async def run_goal(bench, seconds, factor=None, **parameters):
-    """Return the first joint's position some seconds after a goal of 2 rad in 2 s, and the goal."""
+    """Return the first joint's position after some seconds, and the goal.
+
+    The goal is 2 rad in 2 s.
+    """
     for joint in JOINTS:
         bench.joint(joint, commands=("position",), position=0.0, velocity=0.0)
     if factor is not None:

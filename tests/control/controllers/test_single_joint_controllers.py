@@ -17,7 +17,10 @@ GAINS = {"pid": {"p": 10.0, "d": 1.0}}
 
 
 def start_controller(bench, kind: str, interface: str, **parameters):
-    """Return the active controller of the joint ``hip``, which is at 0.5 rad and turns at 2 rad/s."""
+    """Return the active controller of the joint ``hip``.
+
+    The joint is at 0.5 rad and turns at 2 rad/s.
+    """
     bench.joint("hip", commands=(interface,), position=0.5, velocity=2.0)
     return bench.start(controller_class(kind), "hip_controller", joint="hip", **parameters)
 

@@ -30,7 +30,10 @@ def sample_at(trajectory: Trajectory, seconds: float) -> Sample:
 
 
 def solve_polynomial(start: list[float], end: list[float], duration: float) -> np.ndarray:
-    """Return the polynomial with given derivatives at both ends, by solving the linear system; lowest power first."""
+    """Return the polynomial with given derivatives at both ends, lowest power first.
+
+    The linear system is solved.
+    """
     order = len(start) + len(end)
     equations = []
     for time in (0.0, duration):

@@ -210,7 +210,10 @@ def test_edit_of_repeated_macro_text_is_rejected_with_side_effects(tmp_path: Pat
 
 
 def test_rejection_names_text_with_fewest_side_effects(tmp_path: Path) -> None:
-    """The text of the sum in the macro is named, because it affects fewer joints than the shared length."""
+    """The text of the sum in the macro is named.
+
+    It affects fewer joints than the shared length.
+    """
     joint = '<origin xyz="${lift} 0 0"/><parent link="base"/><child link="tip"/>'
     tip_joint = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
     text = WHEELS.replace("</robot>", tip_joint)

@@ -66,7 +66,10 @@ def executor(node):
 
 
 def spin_in_thread(executor):
-    """Spin an executor in a daemon thread, so that a failing test does not block the others; return the thread."""
+    """Spin an executor in a daemon thread, and return the thread.
+
+    A failing test then does not block the others.
+    """
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()
     return thread

@@ -27,7 +27,9 @@ FIBONACCI = get_action("example_interfaces/action/Fibonacci")
 
 
 class CallingScene:
-    """Two nodes: a server of a service and an action, and a client whose timer's callback calls one of them.
+    """A server of a service and an action, and a client of them.
+
+    A callback of the client's timer calls one of them.
 
     Attributes:
         errors: the texts of logged errors.

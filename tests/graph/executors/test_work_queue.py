@@ -52,7 +52,10 @@ class InterruptedAt:
 
 @cache
 def signal_check_offsets(code: CodeType) -> frozenset[int]:
-    """Return the offsets at which Python checks for signals: the first, and those after calls and backward jumps."""
+    """Return the offsets at which Python checks for signals.
+
+    These are the first one, and those after calls and backward jumps.
+    """
     instructions = list(dis.get_instructions(code))
     return frozenset(
         later.offset

@@ -65,7 +65,10 @@ async def test_self_publishing_topic_does_not_starve_others(graph):
 
 
 def record_run(seed):
-    """Return the events and their times in a graph of nodes that answer each other, generated from a seed."""
+    """Return the events and their times in a graph of nodes that answer each other.
+
+    The graph is generated from a seed.
+    """
     rng = random.Random(seed)
     events = []
 

@@ -48,7 +48,10 @@ poses = st.builds(
 
 @st.composite
 def forests(draw):
-    """Draw parents (an earlier frame, or -1) and local poses of up to 24 frames, in any order of arrival."""
+    """Draw parents and local poses of up to 24 frames, in any order of arrival.
+
+    A parent is an earlier frame, or -1.
+    """
     count = draw(st.integers(1, 24))
     parents = [draw(st.integers(-1, number - 1)) for number in range(count)]
     local = [draw(poses) for _ in range(count)]

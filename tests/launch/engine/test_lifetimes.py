@@ -60,7 +60,10 @@ def are_gone_within(seconds: float, launcher: int) -> bool:
 
 @pytest.fixture
 def start_marked(start: Callable[..., Running], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Running]:
-    """Start a launcher whose processes, including the guardian, have a variable in their environment."""
+    """Start a launcher whose processes have a variable in their environment.
+
+    This includes the guardian.
+    """
     numbers = iter(range(100))
 
     def started(*words: object) -> Running:
@@ -216,7 +219,10 @@ class TestCounts:
 
 
 def _is_pooled(thread: threading.Thread) -> bool:
-    """Return whether a thread belongs to the thread pool of the event loop, which ends with the loop."""
+    """Return whether a thread belongs to the thread pool of the event loop.
+
+    The pool ends with the loop.
+    """
     return re.match(r"asyncio_\d+|waitpid-\d+", thread.name) is not None
 
 

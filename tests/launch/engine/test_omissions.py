@@ -78,7 +78,10 @@ async def test_error_offers_skip_missing_command(launch) -> None:
 
 
 class TestMissingPackagesByDefault:
-    """Parts that need missing third-party packages are skipped by default, because robots start many."""
+    """Parts that need missing third-party packages are skipped by default.
+
+    Robots start many such parts.
+    """
 
     async def test_nodes_of_missing_packages_are_skipped(self, launch) -> None:
         result = await launch(

@@ -68,7 +68,10 @@ class ReloadedLaunch:
         await self.until(lambda: f'<link name="{link}"/>' in self.description())
 
     async def watching(self) -> None:
-        """Wait until files are watched, which is the case when a change of an unrelated file is reported."""
+        """Wait until files are watched.
+
+        This is the case when a change of an unrelated file is reported.
+        """
         await self.until(lambda: self.session.reload._watch is not None)
         watch = self.session.reload._watch
         assert watch is not None

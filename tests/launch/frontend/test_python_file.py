@@ -217,7 +217,10 @@ def test_non_action_in_group_is_rejected(write: Write) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="symbolic links need a privilege on Windows")
 class TestLinkedShareFolder:
-    """A package whose share folder has another layout than its sources, and contains links to them."""
+    """A package whose share folder has another layout than its sources.
+
+    The folder contains links to them.
+    """
 
     @pytest.fixture
     def share(self, write: Write, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:

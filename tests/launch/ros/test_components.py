@@ -247,7 +247,10 @@ class TestContainers:
             return node.node.get_parameter("robot_description").value
 
         def is_reloaded(context: LaunchContext) -> bool:
-            """Save the file until the change is noticed, because watching begins after the node is loaded."""
+            """Save the file until the change is noticed.
+
+            Watching begins after the node is loaded.
+            """
             if not texts:
                 return False
             if not path.read_text().count("trunk") or time.time() - path.stat().st_mtime > 1.0:

@@ -45,7 +45,10 @@ async def test_controller_log_messages_have_manager_process_prefix(launch: Any, 
 
 
 async def test_spawner_passes_on_parameter_files(launch: Any, write: Callable[[str, str], Path]):
-    """As in the first example of ros2_control_demos, the file has substitutions, and the manager has no file."""
+    """The spawner passes on parameter files with substitutions.
+
+    The manager has no file, as in the first example of ros2_control_demos.
+    """
     controller = (
         FILE[FILE.index("arm:\n  ros") :]
         .replace("arm:\n  ros__parameters:", ARM)

@@ -29,7 +29,10 @@ URDF = '<robot name="r"><link name="base"/></robot>'
 
 @pytest.fixture
 def ros(tmp_path: Path) -> PackageFinder:
-    """Return a prefix with package ``arm``, whose executable ``tell`` writes its command line as JSON."""
+    """Return a prefix with the package ``arm``.
+
+    Its executable ``tell`` writes its command line as JSON.
+    """
     share = tmp_path / "ros" / "share" / "arm"
     share.mkdir(parents=True)
     (share / "package.xml").write_text("<package><name>arm</name></package>")

@@ -21,7 +21,10 @@ latitudes, longitudes = st.floats(-80.0, 84.0), st.floats(-180.0, 179.999)
 
 
 def meridian_arc(latitude):
-    """Return the length of a meridian arc from the equator by Simpson's rule, independently of the projection."""
+    """Return the length of a meridian arc from the equator, by Simpson's rule.
+
+    This is independent of the projection.
+    """
     squared_eccentricity = (2.0 - 1.0 / 298.257223563) / 298.257223563
 
     def radius(phi):

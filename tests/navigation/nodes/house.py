@@ -60,7 +60,9 @@ def drive_through(test: SteppedSimulation, corners: list[tuple[float, float]], s
 
 
 class Drift:
-    """Republish the robot's pose in odom from ``/tf`` on ``/drifting_tf``, with the errors of bad odometry.
+    """Republish the robot's pose in odom with the errors of bad odometry.
+
+    The poses of ``/tf`` are published on ``/drifting_tf``.
 
     Args:
         test: the simulation.
@@ -140,7 +142,10 @@ def distances_to_faces(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def visible_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
-    """Return points on faces, every 5 cm, if the map is free for 20 cm in front of them, shape (n, 2)."""
+    """Return points on faces, every 5 cm; shape (n, 2).
+
+    In front of each point, the map is free for 20 cm.
+    """
     points = []
     for start, end in faces:
         length = float(np.hypot(*(end - start)))
@@ -161,6 +166,9 @@ def occupied_centers(grid: Grid) -> np.ndarray:
 
 
 def distances_to_occupied_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Return the distance of each point (n, 2) from the nearest occupied cell in meters, shape (n,)."""
+    """Return the distance of each point (n, 2) from the nearest occupied cell.
+
+    The distances are in meters, shape (n,).
+    """
     occupied = occupied_centers(grid)
     return np.array([np.hypot(*(occupied - point).T).min() for point in points])

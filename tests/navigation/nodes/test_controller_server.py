@@ -47,7 +47,10 @@ PATH = path_through((1.0, 1.0), (2.5, 1.0), (2.5, 2.0))
 
 @pytest.fixture
 async def start(graph, clock):
-    """Return a function that starts the server with parameters, and returns robot and action client."""
+    """Return a function that starts the server with parameters.
+
+    It returns the robot and the action client.
+    """
     servers = []
 
     async def start(**parameters):

@@ -94,7 +94,10 @@ async def test_global_costmap_has_size_of_map(robot, start):
 
 
 async def test_costmap_inherits_tf_remappings_of_server(graph, robot):
-    """nav2's launch files use relative names for the topics of transforms, for robots in namespaces."""
+    """The costmap inherits the remappings of transforms from its server.
+
+    nav2's launch files use relative names for these topics, for robots in namespaces.
+    """
     options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
     node = make_costmap(robot.node, graph, options, "global_costmap")
     topics = {subscription.topic_name for subscription in node.subscriptions}

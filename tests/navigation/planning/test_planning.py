@@ -56,7 +56,10 @@ def highest_cost(robot: Costmap, path: np.ndarray) -> int:
 
 
 def dijkstra(crossing_cost: np.ndarray, source: tuple[int, int]) -> np.ndarray:
-    """Return the costs of the cheapest paths along rows, columns and diagonals that cut no corner of an obstacle."""
+    """Return the costs of the cheapest paths from a cell.
+
+    Paths follow rows, columns and diagonals that cut no corner of an obstacle.
+    """
     rows, columns = crossing_cost.shape
     number = np.arange(rows * columns).reshape(rows, columns)
     begins, ends, weights = [], [], []

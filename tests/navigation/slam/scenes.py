@@ -22,7 +22,10 @@ def box_walls(x, y, width, height):
 
 
 def flat_walls(extra=()):
-    """Return a flat of 12 m x 9 m with furniture and a corridor around its center, shape (n, 2, 2)."""
+    """Return the walls of a flat of 12 m x 9 m, shape (n, 2, 2).
+
+    The flat has furniture, and a corridor around its center.
+    """
     boxes = [
         box_walls(0, 0, 12, 9),
         box_walls(0, 0, 5, 3.4),
@@ -35,7 +38,10 @@ def flat_walls(extra=()):
 
 
 def measure_ranges(walls, pose, count=360, noise=0.01, rng=None, farthest=12.0):
-    """Return the ranges and angles of a laser at a pose, shape (count,); infinite without a wall in range."""
+    """Return the ranges and angles of a laser at a pose, shape (count,).
+
+    A range is infinite if no wall is in range.
+    """
     angles = np.linspace(-pi, pi, count, endpoint=False)
     x, y = np.cos(angles + pose[2])[:, None], np.sin(angles + pose[2])[:, None]
     start, directions = walls[:, 0] - pose[:2], walls[:, 1] - walls[:, 0]
@@ -56,7 +62,10 @@ def make_scan(walls, pose, stamp_ns=0, rng=None, count=360, farthest=12.0):
 
 
 def path_along(corners, step=0.1, turn=0.1):
-    """Return poses along a path through corners, shape (n, 3): straight lines, and turns in place."""
+    """Return poses along a path through corners, shape (n, 3).
+
+    The path has straight lines, and turns in place.
+    """
     poses = []
     heading = None
     for (x, y), (next_x, next_y) in pairwise(corners):

@@ -129,7 +129,10 @@ def test_sector_filter_may_cross_pi():
 
 
 def laser_turned_left(target, source, time_ns):
-    """Return the transform of a laser that looks left, half a meter in front of the body's center."""
+    """Return the transform of a laser that looks left.
+
+    The laser is half a meter in front of the body's center.
+    """
     assert (target, source, time_ns) == ("base_link", "laser", 5_000_000_000)
     return (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
 

@@ -27,7 +27,10 @@ async def open_client(world):
 
 
 async def wait_for_rows(client, identity: str) -> dict[str, dict]:
-    """Return the rows of a display when it has one with this ID: frames are discovered one by one."""
+    """Return the rows of a display when it has one with this ID.
+
+    Frames are discovered one by one.
+    """
     while True:
         rows = rows_by_id((await client.until("display_properties"))["properties"])
         if identity in rows:

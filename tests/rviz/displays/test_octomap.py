@@ -34,7 +34,10 @@ OCCUPIED, FREE, INNER = 2, 1, 3
 
 
 def make_octomap(last: list[int], frame: str = "base") -> Any:
-    """Return a map of half a meter with the eight smallest cells at the center's corner, in the first octant."""
+    """Return a map of half a meter with eight occupied cells.
+
+    They are the smallest cells at the center's corner, in the first octant.
+    """
     nodes = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
     leaves = struct.pack("<H", sum(state << 2 * child for child, state in enumerate(last)))
     message = Octomap(binary=True, id="OcTree", resolution=0.5, data=as_signed_bytes(b"".join([*nodes, leaves])))

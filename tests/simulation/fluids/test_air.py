@@ -175,7 +175,10 @@ async def test_wind_of_world_alone_lifts_wing():
 
 
 async def test_wings_of_one_link_add_up():
-    """Descriptions of planes give both halves of a wing to one link, often with plugins of the same name."""
+    """The forces of several wings of one link add up.
+
+    Descriptions of planes give both halves of a wing to one link, often with plugins of the same name.
+    """
     wing_of_half_area = (
         '<plugin name="wing" filename="gz-sim-lift-drag-system"><link_name>link</link_name><cla>5</cla><a0>0.1</a0>'
     )

@@ -23,7 +23,10 @@ ARM_LENGTH_M, ARM_MASS_KG = 0.5, 1.0
 
 
 def model(write_parameters: Path) -> str:
-    """Return an arm of two links of 1 kg, fixed to the world at a height of 2 m, that turn up and down."""
+    """Return an arm of two links of 1 kg that turn up and down.
+
+    It is fixed to the world at a height of 2 m.
+    """
     inertia = "<ixx>0.001</ixx><iyy>0.02</iyy><izz>0.02</izz>"
     links = joints = ""
     for number, (name, parent) in enumerate(zip(JOINTS, ("world", "shoulder_link"), strict=True)):
@@ -44,7 +47,10 @@ def model(write_parameters: Path) -> str:
 
 
 def description(command_interface: str) -> str:
-    """Return the description for the controllers: all joints have one kind of command interface."""
+    """Return the description for the controllers.
+
+    All joints have one kind of command interface.
+    """
     interfaces = f"<command_interface name='{command_interface}'/>" + "".join(
         f"<state_interface name='{state_interface}'/>" for state_interface in ("position", "velocity")
     )

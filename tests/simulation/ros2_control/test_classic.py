@@ -40,7 +40,10 @@ SOFT_LIMITS = (
 
 
 def robot_urdf(interface: str, extra: str = "", safety: str = "", effort: float = 20.0) -> str:
-    """Return a horizontal arm at a height of 1 m, which turns up and down about the joint ``swing``."""
+    """Return a horizontal arm at a height of 1 m.
+
+    It turns up and down about the joint ``swing``.
+    """
     return f"""
 <robot name="arm">
   <link name="world"/>
@@ -85,7 +88,10 @@ async def run_arm(text: str, topic: str = "/robot_description"):
 
 @pytest.fixture
 def file(tmp_path):
-    """Return a function that writes the parameters for a kind of command, and returns the plugin's element."""
+    """Return a function that writes the parameters for a kind of command.
+
+    It returns the plugin's element.
+    """
 
     def write(kind: str, gains: str = "", node: str = "gazebo_ros_control") -> str:
         path = tmp_path / "controllers.yaml"

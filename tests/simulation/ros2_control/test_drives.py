@@ -28,7 +28,10 @@ TIMEOUT_S = 0.2
 
 @dataclass(frozen=True)
 class RobotSetup:
-    """A robot: its model, the command interface of each joint, and the controller with its parameters."""
+    """The model of a robot, with its command interfaces and controller.
+
+    Each joint has a command interface, and the controller has parameters.
+    """
 
     model: str
     text: str

@@ -111,7 +111,9 @@ class CommanderHarness:
         await self.harness.graph.settle()
 
     async def process(self, *results: Heard, stamp: float | None = None) -> None:
-        """Let the engine return some results for a block of sound, and wait until they are processed in its thread.
+        """Let the engine return some results for a block of sound.
+
+        Wait until they are processed in its thread.
 
         Args:
             results: the engine's results for a tenth of a second of sound.

@@ -49,7 +49,10 @@ def things_detector():
 
 
 def render_model(playground_renderer, camera_position, model):
-    """Return an image with a model at its center, and the box around the model's visible pixels."""
+    """Return an image with a model at its center, and the model's box.
+
+    The box surrounds the model's visible pixels.
+    """
     simulation, renderer = playground_renderer
     geoms = [
         number

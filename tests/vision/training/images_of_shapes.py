@@ -11,7 +11,10 @@ NAMES = ("disc", "square")
 
 
 def write_shapes(folder: Path, count: int, *, names: tuple[str, ...] = NAMES, size: int = 96, seed: int = 1) -> Path:
-    """Write `count` images with labels, which both parts of the dataset use, and return the folder."""
+    """Write `count` images with labels, and return the folder.
+
+    Both parts of the dataset use them.
+    """
     rng = np.random.default_rng(seed)
     (folder / "images" / "train").mkdir(parents=True)
     (folder / "labels" / "train").mkdir(parents=True)

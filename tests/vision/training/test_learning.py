@@ -153,7 +153,10 @@ def test_exported_network_matches_trained_network():
 
 @pytest.fixture
 def exported_network(tmp_path):
-    """Export a network of three classes with changed normalizations, and return it with its file."""
+    """Export a network of three classes, and return it with its file.
+
+    Its normalizations are changed.
+    """
     torch.manual_seed(3)
     network = Network(Shape(3, 4))
     with torch.no_grad():

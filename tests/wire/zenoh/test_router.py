@@ -40,7 +40,10 @@ def test_processes_discover_by_router_and_continue_without_it(processes, start_r
 
 
 def test_graph_is_restored_after_router_restart(processes, start_router, monkeypatch, router_port):
-    """Clients are connected only to their router, so they lose the graph with it, and regain it later."""
+    """The graph is restored after a restart of the router.
+
+    Clients are connected only to their router, so they lose the graph with it, and regain it later.
+    """
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
     router = start_router()
     a, b = processes("a"), processes("b")

@@ -27,7 +27,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON 
 
 @pytest.fixture
 def peer(programs, router_port, monkeypatch):
-    """Start a program with the SDK that connects to a session of ours, because there is no router."""
+    """Start a program with the SDK that connects to a session of Linkwright.
+
+    There is no router.
+    """
     settings = os.environ[OVERRIDES]
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
     return lambda: programs(

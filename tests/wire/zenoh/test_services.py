@@ -83,7 +83,10 @@ def test_failed_request_is_reported_once(processes):
 
 
 class LateQuery:
-    """A request that Zenoh delivers after the service was closed, with the attributes that are read."""
+    """A request that Zenoh delivers after the service was closed.
+
+    It has the attributes that are read.
+    """
 
     payload = zenoh.ZBytes(b"\0\1\0\0\1")
     attachment = zenoh.ZBytes(attachment.write(1, 2, bytes(16)))
@@ -105,7 +108,10 @@ class DeclaredSession:
 
 
 def test_request_in_transit_ends_when_service_closes(processes):
-    """Undeclaring a service does not wait for such a request, and its client waited for ten minutes."""
+    """A request in transit ends when its service closes.
+
+    Undeclaring a service does not wait for such a request, and its client waited for ten minutes.
+    """
     node = processes("ours", join_now=False).node
     service = node.create_service(SetBool, "flip", flip)
     names = (EndpointKind.SERVICE, "/flip", "std_srvs::srv::dds_::SetBool_", "RIHS01_00")

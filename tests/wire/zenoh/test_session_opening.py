@@ -134,7 +134,10 @@ class Certificates:
         }
 
     def serve(self) -> int:
-        """Start a server that accepts only the authority's certificates, one client at a time, and return its port."""
+        """Start a server that accepts only the authority's certificates.
+
+        It serves one client at a time. Return its port.
+        """
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
         context.load_cert_chain(self.folder / "cloud.pem", self.folder / "cloud-key.pem")
         context.load_verify_locations(self.folder / "ca.pem")

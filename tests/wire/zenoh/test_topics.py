@@ -52,7 +52,10 @@ def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
 
 
 def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
-    """A thread with Python's lock must not wait for a Zenoh callback that needs the lock, which took 10 s."""
+    """Closing a latched publisher does not wait for callbacks.
+
+    A thread with Python's lock must not wait for a Zenoh callback that needs the lock, which took 10 s.
+    """
     node = processes("ours", join_now=False).node
     result = threading.Event()
 

@@ -34,7 +34,10 @@ DisplayRobotState = get_message("moveit_msgs/msg/DisplayRobotState")
 
 @asynccontextmanager
 async def open_display(cls: str, message_type: str, topic: str, extra: str = ""):
-    """Return a display, a function that publishes to it, and one that returns the drawn markers."""
+    """Return a display and two functions.
+
+    One publishes to the display, and the other returns the drawn markers.
+    """
     async with open_world(make_config(cls, extra)) as world:
         world.describe(ARM)
         publisher = world.graph.create_node("talker").create_publisher(message_type, topic, 10)
